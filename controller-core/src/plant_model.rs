@@ -134,3 +134,30 @@ impl PlantModel {
         self.zeros.iter().map(Factor::order).sum()
     }
 }
+
+impl Factor {
+    /// The factor as `(1 + slow*s)*(1 + fast*s)`, `slow >= fast` [s], or `None` when its roots are complex.
+    /// A first-order factor gives `fast = 0`.
+    ///
+    /// ```
+    /// use controller_core::plant_model::Factor;
+    /// assert_eq!(Factor::second(3.0, 2.0).real_time_constants(), Some((2.0, 1.0)));
+    /// assert_eq!(Factor::second(0.4, 1.0).real_time_constants(), None);
+    /// ```
+    #[must_use]
+    pub fn real_time_constants(&self) -> Option<(f64, f64)> {
+        if self.a2 == 0.0 {
+            return Some((self.a1, 0.0));
+        }
+        let half = 0.5 * self.a1;
+        let discriminant = half * half - self.a2;
+        if discriminant < 0.0 {
+            return None;
+        }
+        // The larger root first, the other from the product: no cancellation.
+        let root = libm::sqrt(discriminant);
+        let large = if half < 0.0 { half - root } else { half + root };
+        let small = self.a2 / large;
+        Some(if large > small { (large, small) } else { (small, large) })
+    }
+}

@@ -1,0 +1,209 @@
+//! The compensator with a shape known at run time: hosts and C callers.
+
+use super::MAX_EXCESS;
+use super::config::CompensatorConfig;
+use super::discretise::{Discretised, discretise};
+use super::kernel::{Coefficients, Compensate, CompensatorOutput, LagsView, Sealed, next_tap};
+use crate::delay::{DelayLine, Memory};
+use crate::error::{Checker, ConfigErrors, Param, Reason};
+use crate::lag::Lag;
+use crate::plant_model::MAX_ORDER;
+use crate::real::{Real, coefficient};
+use crate::snapshot::{Reader, Writer};
+use core::marker::PhantomData;
+use heapless::Vec;
+
+/// A [`Compensator`](super::Compensator) whose order is a number, over delay memory that the caller brings: the
+/// same kernel over the same numbers of lags, hence the same bits.
+///
+/// Law, units, source: as [`Compensator`](super::Compensator). Cost: the same operations in loops.
+/// It takes memory for the largest shape (8 poles), whatever the model.
+///
+/// ```
+/// use controller_core::{AnyCompensator, Compensate, ObserverConfig, plant_model::PlantModel};
+/// let config = ObserverConfig { model: PlantModel::first_order(1.0, 10.0, 2.0), alpha: 1.0, order: None };
+/// let law = AnyCompensator::<f64, [f64; 64]>::new(&config.to_compensator(0.0), 0.1, 64).unwrap();
+/// let mut state = law.state([0.0; 64]).unwrap();
+/// law.settle(&mut state, 0.0, 0.0);
+/// assert_eq!(law.sample(&mut state, 0.0, 0.0).u_f, 0.0);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnyCompensator<T, M> {
+    g: Vec<T, MAX_ORDER>,
+    y_lead: Vec<T, MAX_ORDER>,
+    y_dc: Vec<T, MAX_ORDER>,
+    u_lead: Vec<T, MAX_ORDER>,
+    e_gain: Vec<T, MAX_EXCESS>,
+    inv_gain: T,
+    gain: T,
+    delay: usize,
+    memory: PhantomData<fn() -> M>,
+}
+
+/// State of an [`AnyCompensator`] over the delay memory `M`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnyCompensatorState<T, M> {
+    y: Vec<Lag<T>, MAX_ORDER>,
+    u: Vec<Lag<T>, MAX_ORDER>,
+    e: Vec<Lag<T>, MAX_EXCESS>,
+    reference: T,
+    line: DelayLine<M>,
+}
+
+impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
+    /// Discretises `config` for the sampling period `ts` [s] and delay memory of `capacity` samples.
+    ///
+    /// # Errors
+    /// Every fault of [`CompensatorConfig::validate`].
+    pub fn new(config: &CompensatorConfig, ts: f64, capacity: usize) -> Result<Self, ConfigErrors> {
+        config.validate(ts, capacity)?;
+        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } = discretise(config, ts);
+        let rounded = |list: Vec<f64, MAX_ORDER>| list.iter().map(|&x| coefficient(x)).collect();
+        Ok(Self {
+            g: rounded(g),
+            y_lead: rounded(y_lead),
+            y_dc: rounded(y_dc),
+            u_lead: rounded(u_lead),
+            e_gain: e_gain.iter().map(|&x| coefficient(x)).collect(),
+            inv_gain: coefficient(inv_gain),
+            gain: coefficient(gain),
+            delay,
+            memory: PhantomData,
+        })
+    }
+
+    /// A zeroed state over `memory`.
+    ///
+    /// # Errors
+    /// Memory too short for the delay of this law.
+    pub fn state(&self, memory: M) -> Result<AnyCompensatorState<T, M>, ConfigErrors> {
+        let mut check = Checker::default();
+        let have = memory.as_ref().len();
+        if have <= self.delay {
+            let [value, need] = [have, self.delay + 1].map(super::config::index_to_f64);
+            check.fault(Param::Capacity, Reason::TooLarge, value, need, f64::INFINITY);
+        }
+        let zero = Lag::settled(T::ZERO);
+        check.finish(AnyCompensatorState {
+            y: core::iter::repeat_n(zero, self.g.len()).collect(),
+            u: core::iter::repeat_n(zero, self.g.len()).collect(),
+            e: core::iter::repeat_n(zero, self.e_gain.len()).collect(),
+            reference: T::ZERO,
+            line: DelayLine::new(memory),
+        })
+    }
+
+    /// Samples of delay memory that a compensator with this configuration needs.
+    #[must_use]
+    pub fn needed_capacity(config: &CompensatorConfig, ts: f64) -> usize {
+        super::discretise::whole_samples(config.model.dead_time + config.latency, ts).0.saturating_add(1)
+    }
+
+    /// Order of the chains and number of excess sections.
+    #[must_use]
+    pub fn shape(&self) -> (usize, usize) {
+        (self.g.len(), self.e_gain.len())
+    }
+
+    /// The coefficients that the step uses.
+    #[must_use]
+    #[inline(always)]
+    pub fn coefficients(&self) -> Coefficients<'_, T> {
+        Coefficients {
+            g: &self.g,
+            y_lead: &self.y_lead,
+            y_dc: &self.y_dc,
+            u_lead: &self.u_lead,
+            e_gain: &self.e_gain,
+            inv_gain: self.inv_gain,
+            gain: self.gain,
+            delay: self.delay,
+        }
+    }
+}
+
+impl<T: Real, M> AnyCompensatorState<T, M> {
+    fn lags(&mut self) -> LagsView<'_, T> {
+        LagsView { y: &mut self.y, u: &mut self.u, e: &mut self.e }
+    }
+}
+
+impl<T, M> Sealed for AnyCompensator<T, M> {}
+
+impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
+    type State = AnyCompensatorState<T, M>;
+
+    fn sample(&self, state: &mut Self::State, y: T, u_applied: T) -> CompensatorOutput<T> {
+        state.line.push(u_applied);
+        let u = state.line.tap(self.delay);
+        let x = self.coefficients().advance(&mut state.lags(), y, u);
+        let d_hat = state.reference - x;
+        CompensatorOutput { u_f: -(self.gain * d_hat), d_hat }
+    }
+
+    fn settle(&self, state: &mut Self::State, y0: T, u0: T) {
+        state.line.fill(u0);
+        state.reference = self.coefficients().settle(&mut state.lags(), y0, u0);
+    }
+
+    fn resettle(&self, state: &mut Self::State, y0: T) {
+        let u = state.line.tap(self.delay);
+        state.reference = self.coefficients().settle(&mut state.lags(), y0, u);
+    }
+
+    fn skip(&self, state: &mut Self::State, u: T, n: usize) {
+        for _ in 0..n.min(state.line.capacity()) {
+            state.line.push(u);
+        }
+    }
+
+    /// As the trait says; between laws of different shapes the lags cannot be kept: they settle at `y` and at what
+    /// the delay line holds, and `u_f` returns to zero.
+    fn adopt(&self, old: &Self, state: &mut Self::State, y: T, u: T) -> T {
+        let estimate = |law: &Self, state: &Self::State| {
+            let mut copy = (state.y.clone(), state.u.clone(), state.e.clone());
+            let mut lags = LagsView { y: &mut copy.0, u: &mut copy.1, e: &mut copy.2 };
+            law.coefficients().advance(&mut lags, y, next_tap(&state.line, law.delay, u))
+        };
+        let d_hat = state.reference - estimate(old, state);
+        if self.shape() == old.shape() {
+            state.reference = d_hat + estimate(self, state);
+            (old.gain - self.gain) * d_hat
+        } else {
+            let zero = Lag::settled(T::ZERO);
+            state.y = core::iter::repeat_n(zero, self.g.len()).collect();
+            state.u = state.y.clone();
+            state.e = core::iter::repeat_n(zero, self.e_gain.len()).collect();
+            let next = next_tap(&state.line, self.delay, u);
+            state.reference = self.coefficients().settle(&mut state.lags(), y, next);
+            old.gain * d_hat
+        }
+    }
+
+    fn bounds(&self) -> (f64, f64) {
+        let (y, u) = self.coefficients().bounds();
+        let gain = self.gain.to_f64();
+        (gain * y, gain * u)
+    }
+
+    fn words(state: &Self::State) -> usize {
+        let lags = state.y.len() + state.u.len() + state.e.len();
+        (2 * lags + 1 + state.line.capacity()) * T::WORDS + 1
+    }
+
+    fn save(state: &Self::State, writer: &mut Writer<'_>) {
+        writer.lags(&state.y);
+        writer.lags(&state.u);
+        writer.lags(&state.e);
+        writer.number(state.reference);
+        writer.line(&state.line);
+    }
+
+    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+        reader.lags(&mut state.y)?;
+        reader.lags(&mut state.u)?;
+        reader.lags(&mut state.e)?;
+        state.reference = reader.number()?;
+        reader.line(&mut state.line)
+    }
+}

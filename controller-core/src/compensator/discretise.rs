@@ -1,0 +1,208 @@
+//! From a configuration to the coefficients of the discrete-exact pair. Used in `new` only.
+
+use super::MAX_EXCESS;
+use super::config::CompensatorConfig;
+use super::zoh::{Pole, numerator, times_linear};
+use crate::plant_model::{MAX_ORDER, PlantModel};
+use heapless::Vec;
+
+/// Everything a compensator needs, in `f64`.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Discretised {
+    /// Gains `1-p` of the lags: one for every state of the `y` chain, the same for the `u` chain.
+    pub(super) g: Vec<f64, MAX_ORDER>,
+    /// Weights of the `y` sections' differences.
+    pub(super) y_lead: Vec<f64, MAX_ORDER>,
+    /// Static gains of the `y` sections, 1 or 0 (integrating), at the index of a section's last state.
+    pub(super) y_dc: Vec<f64, MAX_ORDER>,
+    /// Weights of the `u` chain's differences.
+    pub(super) u_lead: Vec<f64, MAX_ORDER>,
+    /// Gains of the shared lags.
+    pub(super) e_gain: Vec<f64, MAX_EXCESS>,
+    /// `1/K`.
+    pub(super) inv_gain: f64,
+    /// Share fed back.
+    pub(super) gain: f64,
+    /// Whole samples of delay `N`.
+    pub(super) delay: usize,
+}
+
+/// A delay as whole samples and a fraction in `0..1`. A delay within 1e-9 of a sample counts as whole: decimal
+/// numbers such as 0.3/0.1 must not add a tap.
+pub(super) fn whole_samples(delay: f64, ts: f64) -> (usize, f64) {
+    let samples = delay / ts;
+    let nearest = libm::round(samples);
+    let near = (samples - nearest).abs() <= 1e-9 * (1.0 + nearest);
+    let whole = if near { nearest } else { libm::floor(samples) };
+    let fraction = if near { 0.0 } else { samples - whole };
+    (f64_to_index(whole), fraction)
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates, and is checked against the capacity
+fn f64_to_index(x: f64) -> usize {
+    x as usize
+}
+
+/// The poles of a model: real ones first, integrators before all others.
+pub(super) fn split_poles(model: &PlantModel, ts: f64) -> (Vec<Pole, MAX_ORDER>, Vec<Pole, MAX_ORDER>) {
+    let mut real: Vec<Pole, MAX_ORDER> = Vec::new();
+    let mut pairs: Vec<Pole, MAX_ORDER> = Vec::new();
+    for _ in 0..model.integrators {
+        let _ = real.push(Pole::Integrator);
+    }
+    for factor in &model.poles {
+        match factor.real_time_constants() {
+            Some((slow, fast)) => {
+                let _ = real.push(Pole::Real { rate: ts / slow });
+                if factor.order() == 2 {
+                    let _ = real.push(Pole::Real { rate: ts / fast });
+                }
+            }
+            None => {
+                let _ = pairs.push(Pole::Pair { d1: factor.a1 * ts / factor.a2, d0: ts * ts / factor.a2 });
+            }
+        }
+    }
+    // Slow before fast, so that slow poles meet slow lags; stable, so integrators stay in front.
+    real.sort_unstable_by(|a, b| rate(*a).partial_cmp(&rate(*b)).unwrap_or(core::cmp::Ordering::Equal));
+    (real, pairs)
+}
+
+fn rate(pole: Pole) -> f64 {
+    match pole {
+        Pole::Real { rate } => rate,
+        _ => 0.0,
+    }
+}
+
+/// Time constants of the zeros that move into the `y` path: real, left half plane, not faster than a sample.
+fn moved_zeros(model: &PlantModel, ts: f64) -> Vec<f64, MAX_ORDER> {
+    let mut moved: Vec<f64, MAX_ORDER> = Vec::new();
+    for zero in &model.zeros {
+        if let Some((slow, fast)) = zero.real_time_constants() {
+            for beta in [slow, fast] {
+                if beta >= ts {
+                    let _ = moved.push(beta);
+                }
+            }
+        }
+    }
+    moved
+}
+
+/// The smallest filter order: poles less moved zeros.
+pub(super) fn least_order(model: &PlantModel, ts: f64) -> usize {
+    model.order() - moved_zeros(model, ts).len()
+}
+
+/// Number of states of the chains and of shared lags that `config` needs.
+pub(super) fn shape(config: &CompensatorConfig, ts: f64) -> (usize, usize) {
+    let least = least_order(&config.model, ts);
+    (config.model.order(), config.order.unwrap_or(least).saturating_sub(least))
+}
+
+/// Computes the coefficients; `config` must have passed its validation.
+pub(super) fn discretise(config: &CompensatorConfig, ts: f64) -> Discretised {
+    let model = &config.model;
+    let (n, excess) = shape(config, ts);
+    let (mut real, pairs) = split_poles(model, ts);
+    let lag_gain = |tau: f64| -libm::expm1(-ts / tau);
+
+    // The lags of the chains: moved zeros and as many filter poles as fill the order, slow before fast.
+    let mut taus = moved_zeros(model, ts);
+    while taus.len() < n && taus.push(config.time_constant).is_ok() {}
+    taus.sort_unstable_by(|a, b| b.partial_cmp(a).unwrap_or(core::cmp::Ordering::Equal));
+    let g: Vec<f64, MAX_ORDER> = taus.iter().map(|&tau| lag_gain(tau)).collect();
+
+    // Sections of the y path: real poles two by two, then the pairs, a single real pole last.
+    let single = if n & 1 == 1 { real.pop() } else { None };
+    let mut y_lead: Vec<f64, MAX_ORDER> = Vec::new();
+    let mut y_dc: Vec<f64, MAX_ORDER> = Vec::new();
+    let mut poles: Vec<Pole, MAX_ORDER> = Vec::new();
+    let two_by_two = real.chunks_exact(2).map(|two| (two, None));
+    let complex = pairs.iter().map(|pair| (&[][..], Some(*pair)));
+    for ((two, pair), gains) in two_by_two.chain(complex).zip(g.chunks_exact(2)) {
+        if let [g1, g2] = *gains {
+            let (lead, dc) = section_of_two(two, pair, g1, g2, ts);
+            let _ = y_lead.extend_from_slice(&lead);
+            let _ = y_dc.extend_from_slice(&[0.0, dc]);
+        }
+        let _ = poles.extend_from_slice(two);
+        let _ = poles.extend_from_slice(pair.as_slice());
+    }
+    if let (Some(pole), Some(&last)) = (single, g.last()) {
+        let (fall, _) = pole.one_minus_q();
+        let integrating = pole == Pole::Integrator;
+        let _ = y_lead.push(if integrating { last / ts } else { last / fall });
+        let _ = y_dc.push(if integrating { 0.0 } else { 1.0 });
+        let _ = poles.push(pole);
+    }
+
+    let (delay, fraction) = whole_samples(model.dead_time + config.latency, ts);
+    let taps = numerator(&poles, &model.zeros, ts, fraction);
+    let alpha_gain = lag_gain(config.time_constant);
+    Discretised {
+        u_lead: chain_weights(&taps, &g),
+        g,
+        y_lead,
+        y_dc,
+        e_gain: core::iter::repeat_n(alpha_gain, excess).collect(),
+        inv_gain: 1.0 / model.gain,
+        gain: config.gain,
+        delay,
+    }
+}
+
+/// Weights `(E1, E2)` and static gain of a second-order section `dc*w2 + E2*(w1-w2) + E1*(x-w1)` that realises
+/// `g1*g2*(1-q1 z^-1)(1-q2 z^-1)/(norm*(1-p1 z^-1)(1-p2 z^-1))`, `norm = (1-q1)(1-q2)`, or with `ts` in place of
+/// `1-q` for an integrator.
+fn section_of_two(two: &[Pole], pair: Option<Pole>, g1: f64, g2: f64, ts: f64) -> ([f64; 2], f64) {
+    let (mut norm, mut sum, mut dc) = (1.0, 0.0, 1.0);
+    for pole in two {
+        let (fall, _) = pole.one_minus_q();
+        if *pole == Pole::Integrator {
+            norm *= ts;
+            dc = 0.0;
+        } else {
+            norm *= fall;
+            sum += fall;
+        }
+    }
+    if let Some(pair) = pair {
+        let (re, im) = pair.one_minus_q();
+        norm = re * re + im * im;
+        sum = 2.0 * re;
+    }
+    let e1 = g1 * g2 / norm;
+    ([e1, e1 * (sum - g2) / g1], dc)
+}
+
+/// Weights `E_j` such that `w_n + sum E_j*(w_(j-1) - w_j)` has the numerator `prod(g)*B/B(1)`, `taps = b_k`.
+///
+/// With `1 = z` the chain's static gain is 1 for any weights, so only `(P(z)-P(1) z^-n)/(1-z^-1)` is matched, whose
+/// coefficients are partial sums of the taps.
+fn chain_weights(taps: &[f64], g: &[f64]) -> Vec<f64, MAX_ORDER> {
+    let product: f64 = g.iter().product();
+    let mut rest = [0.0; MAX_ORDER + 1];
+    let mut sum = 0.0;
+    for (x, b) in rest.iter_mut().zip(taps).take(g.len()) {
+        sum += b;
+        *x = product * sum;
+    }
+    let mut weights = Vec::new();
+    for (j, gain) in g.iter().enumerate() {
+        let [lead, ..] = rest;
+        let _ = weights.push(lead);
+        let mut known = [0.0; MAX_ORDER + 1];
+        known[0] = lead;
+        for later in g.iter().skip(j + 1) {
+            known = times_linear(&known, 1.0, later - 1.0);
+        }
+        let mut next = [0.0; MAX_ORDER + 1];
+        for (x, (r, k)) in next.iter_mut().zip(rest.iter().zip(&known).skip(1)) {
+            *x = (r - k) / gain;
+        }
+        rest = next;
+    }
+    weights
+}

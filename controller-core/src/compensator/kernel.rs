@@ -1,0 +1,167 @@
+//! The one step that every compensator runs, over slices, and the trait the controller sees.
+
+use crate::delay::{DelayLine, Memory};
+use crate::lag::Lag;
+use crate::real::Real;
+
+/// What a compensator gives in one sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CompensatorOutput<T> {
+    /// What to add to the controller's output [u]: `u_f = -gain*d_hat`.
+    pub u_f: T,
+    /// Estimated disturbance at the plant input [u], relative to the point of initialisation.
+    pub d_hat: T,
+}
+
+/// The coefficients of a compensator, borrowed: what the step uses, what an export writes and what an analysis of
+/// the deployed law reads. The difference equation is that of [`Compensator`](super::Compensator).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coefficients<'a, T> {
+    /// Gains `g = 1-p` of the lags, for the `y` and for the `u` chain.
+    pub g: &'a [T],
+    /// Weights of the differences in the `y` sections: `E_1, E_2` for every two lags, one for a single last lag.
+    pub y_lead: &'a [T],
+    /// Static gains of the `y` sections (1, or 0 when integrating) at the index of each section's last lag.
+    pub y_dc: &'a [T],
+    /// Weights `E_j` of the differences in the `u` chain.
+    pub u_lead: &'a [T],
+    /// Gains of the lags that both paths share.
+    pub e_gain: &'a [T],
+    /// `1/K` of the model.
+    pub inv_gain: T,
+    /// Share of the estimated disturbance that is fed back.
+    pub gain: T,
+    /// Whole samples of delay in front of the `u` chain, behind the one that every sampled loop has.
+    pub delay: usize,
+}
+
+/// The lags, borrowed.
+pub(super) struct LagsView<'a, T> {
+    pub(super) y: &'a mut [Lag<T>],
+    pub(super) u: &'a mut [Lag<T>],
+    pub(super) e: &'a mut [Lag<T>],
+}
+
+impl<T: Real> Coefficients<'_, T> {
+    /// The unscaled estimate `x = (u path) - (y path)/K`: minus the disturbance, filtered. Moves the lags.
+    #[inline(always)]
+    pub(super) fn advance(&self, lags: &mut LagsView<'_, T>, y: T, u: T) -> T {
+        let from_u = self.u_path(lags.u, u);
+        let from_y = self.y_path(lags.y, y);
+        let mut x = from_u - self.inv_gain * from_y;
+        for (lag, &g) in lags.e.iter_mut().zip(self.e_gain) {
+            // (1+z^-1)/2 behind a lag: the mean of its state before and after the sample.
+            let before = lag.advance(g, x);
+            x = before.value + (g * T::from_f64(0.5)) * before.difference;
+        }
+        x
+    }
+
+    /// A chain of lags, each fed by the state before it: `w_n + sum E_j*(w_(j-1) - w_j)`.
+    #[inline(always)]
+    fn u_path(&self, lags: &mut [Lag<T>], u: T) -> T {
+        let mut x = u;
+        let mut sum = T::ZERO;
+        for ((lag, &g), &lead) in lags.iter_mut().zip(self.g).zip(self.u_lead) {
+            let before = lag.advance(g, x);
+            sum = sum + lead * before.difference;
+            x = before.value;
+        }
+        sum + x
+    }
+
+    /// A cascade of second-order sections, and one of first order when the number of lags is odd.
+    #[inline(always)]
+    fn y_path(&self, lags: &mut [Lag<T>], y: T) -> T {
+        let mut x = y;
+        let coefficients =
+            self.g.chunks_exact(2).zip(self.y_lead.chunks_exact(2)).zip(self.y_dc.chunks_exact(2));
+        let mut sections = lags.chunks_exact_mut(2);
+        for (section, ((g, lead), dc)) in sections.by_ref().zip(coefficients) {
+            if let ([first, second], &[g1, g2], &[e1, e2], &[_, dc]) = (section, g, lead, dc) {
+                let one = first.advance(g1, x);
+                let two = second.advance(g2, one.value);
+                x = (dc * two.value + e2 * two.difference) + e1 * one.difference;
+            }
+        }
+        if let ([lag], Some(&g), Some(&lead), Some(&dc)) =
+            (sections.into_remainder(), self.g.last(), self.y_lead.last(), self.y_dc.last())
+        {
+            let before = lag.advance(g, x);
+            x = dc * before.value + lead * before.difference;
+        }
+        x
+    }
+
+    /// Puts all lags at rest for the measurement `y0` and the delayed input `u0`; returns the estimate there.
+    pub(super) fn settle(&self, lags: &mut LagsView<'_, T>, y0: T, u0: T) -> T {
+        lags.u.fill(Lag::settled(u0));
+        let mut x = y0;
+        for (section, dc) in lags.y.chunks_mut(2).zip(self.y_dc.chunks(2)) {
+            section.fill(Lag::settled(x));
+            x = x * dc.last().copied().unwrap_or_default();
+        }
+        let estimate = u0 - self.inv_gain * x;
+        lags.e.fill(Lag::settled(estimate));
+        estimate
+    }
+
+    /// Bounds of the estimate per unit of `y` and of `u`, for overflow checks.
+    pub(super) fn bounds(&self) -> (f64, f64) {
+        let size = |x: &T| x.to_f64().abs();
+        let from_y: f64 = self
+            .y_lead
+            .chunks(2)
+            .zip(self.y_dc.chunks(2))
+            .map(|(lead, dc)| 2.0 * lead.iter().map(size).sum::<f64>() + dc.iter().map(size).sum::<f64>())
+            .product();
+        let from_u = 1.0 + 2.0 * self.u_lead.iter().map(size).sum::<f64>();
+        (from_y * size(&self.inv_gain), from_u)
+    }
+}
+
+mod sealed {
+    pub trait Sealed {}
+}
+pub(super) use sealed::Sealed;
+
+/// What a [`Controller`](crate::Controller) asks of its disturbance compensator. Sealed: the blocks of this crate
+/// implement it ([`NoCompensator`](super::NoCompensator), [`Compensator`](super::Compensator),
+/// [`AnyCompensator`](super::AnyCompensator)).
+pub trait Compensate<T: Real>: Sealed {
+    /// The block's state.
+    type State: Clone;
+
+    /// Takes one sample: pushes the applied output `u_applied = u[k-1]` into the delay line, reads `y[k]`.
+    fn sample(&self, state: &mut Self::State, y: T, u_applied: T) -> CompensatorOutput<T>;
+
+    /// Everything at rest at `(y0, u0)`, the whole delay line at `u0`: nothing moves, `d_hat = 0`.
+    fn settle(&self, state: &mut Self::State, y0: T, u0: T);
+
+    /// The lags at rest at `y0` and at what the delay line holds now; the line keeps its history. `d_hat = 0`.
+    fn resettle(&self, state: &mut Self::State, y0: T);
+
+    /// `n` samples were lost while `u` was applied: moves the delay line only.
+    fn skip(&self, state: &mut Self::State, u: T, n: usize);
+
+    /// Takes the state over from `old`; `y` and `u` are the last measurement and output. `d_hat` does not jump.
+    /// Returns by how much `u_f` does.
+    fn adopt(&self, old: &Self, state: &mut Self::State, y: T, u: T) -> T;
+
+    /// Bounds of `|u_f|` per unit of `|y|` and of `|u|`.
+    fn bounds(&self) -> (f64, f64);
+
+    /// Number of words a snapshot of the state needs.
+    fn words(state: &Self::State) -> usize;
+
+    /// Writes the state.
+    fn save(state: &Self::State, writer: &mut crate::snapshot::Writer<'_>);
+
+    /// Reads a state back; `None` when a number is not finite or a place is outside the line.
+    fn restore(state: &mut Self::State, reader: &mut crate::snapshot::Reader<'_>) -> Option<()>;
+}
+
+/// What the line will deliver in the next sample, after `u` has been pushed.
+pub(super) fn next_tap<T: Real, M: Memory<T>>(line: &DelayLine<M>, delay: usize, u: T) -> T {
+    if delay == 0 { u } else { line.tap(delay - 1) }
+}

@@ -1,0 +1,263 @@
+//! The compensator with a shape known at compile time: what is flashed.
+
+use super::MAX_EXCESS;
+use super::config::{CompensatorConfig, EstimatorConfig, ObserverConfig};
+use super::discretise::{Discretised, discretise, shape};
+use super::kernel::{Coefficients, Compensate, CompensatorOutput, LagsView, Sealed, next_tap};
+use crate::delay::DelayLine;
+use crate::error::{Checker, ConfigErrors, Param, Reason};
+use crate::lag::Lag;
+use crate::plant_model::MAX_ORDER;
+use crate::real::{Real, coefficient};
+use crate::snapshot::{Reader, Writer};
+
+/// A disturbance estimator for a model of second order ([`EstimatorConfig`] with `a2 > 0`), delay line of `R`
+/// samples. A first-order model needs [`Compensator<T, 1, 2, R>`](Compensator).
+pub type Estimator<T, const R: usize> = Compensator<T, 2, 1, R>;
+
+/// A disturbance observer for a model with `N` poles and as many filter poles as it needs, delay line of `R` samples.
+pub type Observer<T, const N: usize, const R: usize> = Compensator<T, N, 0, R>;
+
+/// A disturbance compensator for a model with `N` poles, `E` excess filter poles and a delay line of `R` samples.
+///
+/// Continuous law and discrete pair: see the [module](crate::compensator). Difference equation of one sample, with
+/// the lags `w <- w + g*(x - w)`:
+///
+/// ```text
+/// x_u = w_N + sum_j E_j*(w_(j-1) - w_j),  w_0 = u_applied[k-1-delay]         chain of N lags
+/// x_y = dc*w_2 + E_2*(w_1-w_2) + E_1*(x-w_1)                                 section by section, from y[k]
+/// x   = (w + (g/2)*(x - w))                                                  E times, from x_u - x_y/K
+/// d_hat = x_0 - x;  u_f = -gain*d_hat                                        x_0: x at the point of initialisation
+/// ```
+///
+/// `d + (zeros moved into C_y) = N + E`, `d` the filter order: for an estimator `E = 3 - N`.
+/// Units: `y` [y], `u` [u]. Inputs must be finite (the [`Controller`](crate::Controller) checks them).
+/// Cost per sample: `6*(2N+E)` operations for the lags, `5N + 2E + 4` for the outputs, one write and one read of the
+/// delay line; no division, and the same on every call. State: `4N + 2E + 2 + R` numbers.
+/// Source: Tena et al. 2022, eqs (26), (27); Vrančić & Huba 2021, eqs (13)-(15).
+///
+/// ```
+/// use controller_core::{CompensatorInput, EstimatorConfig, Estimator};
+/// let config = EstimatorConfig { gain: 1.0, a1: 1.2, a2: 0.2, dead_time: 0.2, kfd: 0.69, tfd: 0.06 };
+/// let estimator = Estimator::<f32, 32>::new(&config.to_compensator(0.0), 0.01).unwrap();
+/// let mut state = estimator.settled(0.0, 0.0);
+/// let out = estimator.step(&mut state, CompensatorInput { y: 0.0, u_applied: 0.0 });
+/// assert_eq!(out.u_f, 0.0);
+/// // A line of 8 samples cannot hold a dead time of 20.
+/// assert!(Estimator::<f32, 8>::new(&config.to_compensator(0.0), 0.01).is_err());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compensator<T, const N: usize, const E: usize, const R: usize> {
+    g: [T; N],
+    y_lead: [T; N],
+    y_dc: [T; N],
+    u_lead: [T; N],
+    e_gain: [T; E],
+    inv_gain: T,
+    gain: T,
+    delay: usize,
+}
+
+/// State of a [`Compensator`]: lags (plain signals), the applied outputs of the last `R` samples, the estimate at
+/// the point of initialisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CompensatorState<T, const N: usize, const E: usize, const R: usize> {
+    y: [Lag<T>; N],
+    u: [Lag<T>; N],
+    e: [Lag<T>; E],
+    reference: T,
+    line: DelayLine<[T; R]>,
+}
+
+/// What a compensator reads in one sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CompensatorInput<T> {
+    /// Measurement `y[k]` [y].
+    pub y: T,
+    /// Output that was applied since the last sample, `u[k-1]` after limits or as read back [u].
+    pub u_applied: T,
+}
+
+impl<T: Real, const N: usize, const E: usize, const R: usize> Default for CompensatorState<T, N, E, R> {
+    fn default() -> Self {
+        Self {
+            y: [Lag::settled(T::ZERO); N],
+            u: [Lag::settled(T::ZERO); N],
+            e: [Lag::settled(T::ZERO); E],
+            reference: T::ZERO,
+            line: DelayLine::new([T::ZERO; R]),
+        }
+    }
+}
+
+/// Rounds a list of coefficients into an array of the same length.
+fn array<T: Real, const L: usize>(from: &[f64]) -> [T; L] {
+    let mut out = [T::ZERO; L];
+    for (x, y) in out.iter_mut().zip(from) {
+        *x = coefficient(*y);
+    }
+    out
+}
+
+impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, E, R> {
+    /// Discretises `config` for the sampling period `ts` [s].
+    ///
+    /// # Errors
+    /// Every fault of [`CompensatorConfig::validate`] for a line of `R` samples; a model whose order is not `N`, or
+    /// a filter whose excess order is not `E` (the message names both).
+    pub fn new(config: &CompensatorConfig, ts: f64) -> Result<Self, ConfigErrors> {
+        const {
+            assert!(N >= 1 && N <= MAX_ORDER, "a compensator has 1 to 8 states in its chains");
+            assert!(E <= MAX_EXCESS, "a compensator has at most 3 excess sections");
+            assert!(R >= 1, "a delay line has at least one sample");
+        }
+        config.validate(ts, R)?;
+        let (order, excess) = shape(config, ts);
+        let mut check = Checker::default();
+        let as_f64 = super::config::index_to_f64;
+        if order != N {
+            check.fault(Param::ModelOrder, Reason::Mismatch, as_f64(order), as_f64(N), as_f64(N));
+        }
+        if excess != E {
+            check.fault(Param::FilterOrder, Reason::Mismatch, as_f64(excess), as_f64(E), as_f64(E));
+        }
+        check.into_result()?;
+        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } = discretise(config, ts);
+        Ok(Self {
+            g: array(&g),
+            y_lead: array(&y_lead),
+            y_dc: array(&y_dc),
+            u_lead: array(&u_lead),
+            e_gain: array(&e_gain),
+            inv_gain: coefficient(inv_gain),
+            gain: coefficient(gain),
+            delay,
+        })
+    }
+
+    /// An estimator, see [`EstimatorConfig`]; `latency` [s].
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn estimator(config: &EstimatorConfig, latency: f64, ts: f64) -> Result<Self, ConfigErrors> {
+        Self::new(&config.to_compensator(latency), ts)
+    }
+
+    /// An observer, see [`ObserverConfig`]; `latency` [s].
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn observer(config: &ObserverConfig, latency: f64, ts: f64) -> Result<Self, ConfigErrors> {
+        Self::new(&config.to_compensator(latency), ts)
+    }
+
+    /// A state at rest at the measurement `y0` and the output `u0`.
+    #[must_use]
+    pub fn settled(&self, y0: T, u0: T) -> CompensatorState<T, N, E, R> {
+        let mut state = CompensatorState::default();
+        self.settle(&mut state, y0, u0);
+        state
+    }
+
+    /// One sample. See the type for the equation, units and cost.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut CompensatorState<T, N, E, R>,
+        input: CompensatorInput<T>,
+    ) -> CompensatorOutput<T> {
+        self.sample(state, input.y, input.u_applied)
+    }
+
+    /// The coefficients that the step uses.
+    #[must_use]
+    #[inline(always)]
+    pub fn coefficients(&self) -> Coefficients<'_, T> {
+        Coefficients {
+            g: &self.g,
+            y_lead: &self.y_lead,
+            y_dc: &self.y_dc,
+            u_lead: &self.u_lead,
+            e_gain: &self.e_gain,
+            inv_gain: self.inv_gain,
+            gain: self.gain,
+            delay: self.delay,
+        }
+    }
+}
+
+impl<T: Real, const N: usize, const E: usize, const R: usize> CompensatorState<T, N, E, R> {
+    #[inline(always)]
+    fn lags(&mut self) -> LagsView<'_, T> {
+        LagsView { y: &mut self.y, u: &mut self.u, e: &mut self.e }
+    }
+}
+
+impl<T, const N: usize, const E: usize, const R: usize> Sealed for Compensator<T, N, E, R> {}
+
+impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for Compensator<T, N, E, R> {
+    type State = CompensatorState<T, N, E, R>;
+
+    #[inline(always)]
+    fn sample(&self, state: &mut Self::State, y: T, u_applied: T) -> CompensatorOutput<T> {
+        state.line.push(u_applied);
+        let u = state.line.tap(self.delay);
+        let x = self.coefficients().advance(&mut state.lags(), y, u);
+        let d_hat = state.reference - x;
+        CompensatorOutput { u_f: -(self.gain * d_hat), d_hat }
+    }
+
+    fn settle(&self, state: &mut Self::State, y0: T, u0: T) {
+        state.line.fill(u0);
+        state.reference = self.coefficients().settle(&mut state.lags(), y0, u0);
+    }
+
+    fn resettle(&self, state: &mut Self::State, y0: T) {
+        let u = state.line.tap(self.delay);
+        state.reference = self.coefficients().settle(&mut state.lags(), y0, u);
+    }
+
+    fn skip(&self, state: &mut Self::State, u: T, n: usize) {
+        for _ in 0..n.min(R) {
+            state.line.push(u);
+        }
+    }
+
+    fn adopt(&self, old: &Self, state: &mut Self::State, y: T, u: T) -> T {
+        let estimate = |law: &Self| {
+            let mut copy = (state.y, state.u, state.e);
+            let mut lags = LagsView { y: &mut copy.0, u: &mut copy.1, e: &mut copy.2 };
+            law.coefficients().advance(&mut lags, y, next_tap(&state.line, law.delay, u))
+        };
+        let (before, after) = (estimate(old), estimate(self));
+        let d_hat = state.reference - before;
+        state.reference = d_hat + after;
+        (old.gain - self.gain) * d_hat
+    }
+
+    fn bounds(&self) -> (f64, f64) {
+        let (y, u) = self.coefficients().bounds();
+        let gain = self.gain.to_f64();
+        (gain * y, gain * u)
+    }
+
+    fn words(_: &Self::State) -> usize {
+        (4 * N + 2 * E + 1 + R) * T::WORDS + 1
+    }
+
+    fn save(state: &Self::State, writer: &mut Writer<'_>) {
+        writer.lags(&state.y);
+        writer.lags(&state.u);
+        writer.lags(&state.e);
+        writer.number(state.reference);
+        writer.line(&state.line);
+    }
+
+    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+        reader.lags(&mut state.y)?;
+        reader.lags(&mut state.u)?;
+        reader.lags(&mut state.e)?;
+        state.reference = reader.number()?;
+        reader.line(&mut state.line)
+    }
+}

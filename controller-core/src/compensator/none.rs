@@ -1,0 +1,41 @@
+//! No compensator: a plain PID loop.
+
+use super::kernel::{Compensate, CompensatorOutput, Sealed};
+use crate::real::Real;
+use crate::snapshot::{Reader, Writer};
+
+/// The compensator of a loop that has none: `u_f = 0`, no state, no cost.
+///
+/// ```
+/// use controller_core::{Controller, ControllerConfig, NoCompensator};
+/// let law: Controller<f32, NoCompensator> = Controller::new(&ControllerConfig::default(), 0.01).unwrap();
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct NoCompensator;
+
+impl Sealed for NoCompensator {}
+
+impl<T: Real> Compensate<T> for NoCompensator {
+    type State = ();
+
+    #[inline(always)]
+    fn sample(&self, _: &mut (), _: T, _: T) -> CompensatorOutput<T> {
+        CompensatorOutput { u_f: T::ZERO, d_hat: T::ZERO }
+    }
+    fn settle(&self, _: &mut (), _: T, _: T) {}
+    fn resettle(&self, _: &mut (), _: T) {}
+    fn skip(&self, _: &mut (), _: T, _: usize) {}
+    fn adopt(&self, _: &Self, _: &mut (), _: T, _: T) -> T {
+        T::ZERO
+    }
+    fn bounds(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+    fn words(_: &()) -> usize {
+        0
+    }
+    fn save(_: &(), _: &mut Writer<'_>) {}
+    fn restore(_: &mut (), _: &mut Reader<'_>) -> Option<()> {
+        Some(())
+    }
+}

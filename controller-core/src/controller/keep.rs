@@ -1,0 +1,157 @@
+//! What happens to a loop's state outside its samples: settling, new laws, lost samples, saving and restoring.
+
+use super::law::Controller;
+use super::state::ControllerState;
+use crate::compensator::Compensate;
+use crate::mode::Mode;
+use crate::real::Real;
+use crate::sample::SampleGuardState;
+use crate::snapshot::{self, SnapshotError};
+use crate::status::Status;
+
+impl<T: Real, C: Compensate<T>> Controller<T, C> {
+    /// A zeroed state: it settles itself on its first good sample, at the read-back or at `initial_output`.
+    #[must_use]
+    pub fn zeroed(&self) -> ControllerState<T, C::State>
+    where
+        C::State: Default,
+    {
+        ControllerState::default()
+    }
+
+    /// Puts the loop at rest: set-point `r0`, measurement `y0`, output `u0`. Nothing moves until an input does.
+    /// Values that are not finite or out of range are moved into their ranges. Cost: fills the delay line.
+    pub fn settle(&self, state: &mut ControllerState<T, C::State>, r0: T, y0: T, u0: T) {
+        let (y_lo, y_hi) = self.guard.range();
+        let y0 = y0.clamp_to(y_lo, y_hi);
+        let u0 = self.limit.into_range(u0);
+        let r0 = self.setpoint.into_range(r0);
+        self.compensator.settle(&mut state.compensator, y0, u0);
+        let seen = self.seen(r0, y0);
+        self.pid.settle(&mut state.pid, seen, u0);
+        state.pd = u0 - state.pid.integral();
+        state.guard = SampleGuardState::default();
+        state.mode = Mode::Auto;
+        (state.u, state.v, state.u_f) = (u0, u0, T::ZERO);
+        (state.y, state.r, state.r_asked) = (y0, r0, r0);
+        state.offset = T::ZERO;
+        state.alarms = Status::NONE;
+        (state.compensating, state.overrun, state.awake, state.started) = (true, false, true, true);
+    }
+
+    /// Takes `state` over from the loop `old` without a bump: any parameter, limit, dead time or the sampling period
+    /// may differ. In the first sample of the new law the output differs from the old one's by at most
+    /// `|dki|*ts*|e| + |d(high-frequency gain)|*|y[k]-y[k-1]|`, and by what a tighter limit takes away.
+    ///
+    /// The lags and the delay line are signals and are kept; the integral term absorbs the rest. With another
+    /// sampling period the line's samples mean other times: the compensator then settles, its last output going
+    /// into the integral term.
+    pub fn adopt(&self, old: &Self, state: &mut ControllerState<T, C::State>) {
+        if !state.started {
+            return;
+        }
+        // What the old anti-windup rule still owes for the last sample.
+        let owed = old.anti_windup.correction(state.pid.increment(), state.v, state.u);
+        state.v = state.u;
+        let last = state.pid.input();
+        let before = old.pid.preview(&state.pid, last);
+        let after = self.pid.preview(&state.pid, self.seen(state.r, state.y));
+        let jump = if self.ts == old.ts {
+            self.compensator.adopt(&old.compensator, &mut state.compensator, state.y, state.u)
+        } else {
+            self.compensator.settle(&mut state.compensator, state.y, state.u);
+            -state.u_f
+        };
+        let jump = if state.compensating { jump } else { T::ZERO };
+        state.pid.shift_integral((before - after) + (owed - jump));
+        // The last increment has been judged; the new rule must not judge it again.
+        state.pid.forget_increment();
+    }
+
+    /// Tells the loop that `n` samples were lost while its last output was applied.
+    ///
+    /// Up to `hold_samples` the compensator is taken through them with the last measurement; beyond, only its delay
+    /// line is, and the loop settles at its next good measurement. The next output carries [`Status::OVERRUN`].
+    /// Cost: at most `hold_samples` compensator samples plus one write per cell of the delay line.
+    pub fn advance(&self, state: &mut ControllerState<T, C::State>, n: u32) {
+        state.overrun |= n > 0;
+        if !state.started {
+            return;
+        }
+        self.guard.lost(&mut state.guard, n);
+        if state.guard.settle {
+            self.compensator.skip(&mut state.compensator, state.u, usize::try_from(n).unwrap_or(usize::MAX));
+        } else {
+            for _ in 0..n {
+                let _ = self.compensator.sample(&mut state.compensator, state.y, state.u);
+            }
+        }
+    }
+
+    /// The smallest constant error [y] that still moves the output when the integral term is as large as the output
+    /// range; see [`Pid::resolution`](crate::Pid::resolution).
+    #[must_use]
+    pub fn resolution(&self) -> f64 {
+        let (lo, hi) = (self.limit.lo().magnitude(), self.limit.hi().magnitude());
+        self.pid.resolution(if lo > hi { lo } else { hi })
+    }
+
+    /// Number of words that [`save`](Self::save) writes for `state`.
+    #[must_use]
+    pub fn snapshot_words(state: &ControllerState<T, C::State>) -> usize {
+        Self::body_words(state) + snapshot::FRAME
+    }
+
+    fn body_words(state: &ControllerState<T, C::State>) -> usize {
+        ControllerState::<T, C::State>::own_words() + C::words(&state.compensator)
+    }
+
+    /// Writes `state` into `words`; returns how many were used. A loop restored from them continues bit for bit.
+    ///
+    /// # Errors
+    /// A buffer shorter than [`snapshot_words`](Self::snapshot_words).
+    ///
+    /// ```
+    /// use controller_core::{Controller, ControllerConfig, ControllerInput, PidConfig, SnapshotError};
+    /// let config = ControllerConfig { pid: PidConfig { kp: 1.0, ki: 0.5, ..PidConfig::default() }, ..ControllerConfig::default() };
+    /// let law = Controller::<f32>::new(&config, 0.1).unwrap();
+    /// let mut state = law.zeroed();
+    /// law.step(&mut state, &ControllerInput { r: 1.0, ..ControllerInput::default() });
+    /// let mut words = [0; 64];
+    /// let n = law.save(&state, &mut words).unwrap();
+    /// let mut copy = law.zeroed();
+    /// law.restore(&mut copy, &words[..n]).unwrap();
+    /// assert_eq!(copy, state);
+    /// words[5] ^= 1;
+    /// assert_eq!(law.restore(&mut copy, &words[..n]), Err(SnapshotError::Checksum));
+    /// ```
+    pub fn save(
+        &self,
+        state: &ControllerState<T, C::State>,
+        words: &mut [u32],
+    ) -> Result<usize, SnapshotError> {
+        snapshot::write::<T>(words, Self::body_words(state), |writer| {
+            state.save_own(writer);
+            C::save(&state.compensator, writer);
+        })
+    }
+
+    /// Reads a state back from `words`. `state` must have the shape of the saved one (same number type, same
+    /// compensator) and is left alone when anything is wrong.
+    ///
+    /// # Errors
+    /// Another version or shape, a wrong checksum, a number that is not finite.
+    pub fn restore(
+        &self,
+        state: &mut ControllerState<T, C::State>,
+        words: &[u32],
+    ) -> Result<(), SnapshotError> {
+        let mut fresh = state.clone();
+        snapshot::read::<T, ()>(words, Self::body_words(state), |reader| {
+            fresh.restore_own(reader)?;
+            C::restore(&mut fresh.compensator, reader)
+        })?;
+        *state = fresh;
+        Ok(())
+    }
+}

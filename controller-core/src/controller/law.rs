@@ -1,0 +1,160 @@
+//! The loop itself.
+
+use super::config::ControllerConfig;
+use crate::alarm::Alarms;
+use crate::anti_windup::AntiWindup;
+use crate::compensator::{Compensate, NoCompensator};
+use crate::deadband::Deadband;
+use crate::error::{Checker, ConfigErrors, Param, Reason};
+use crate::limit::{Limit, RANGE_LIMIT};
+use crate::pid::Pid;
+use crate::real::{Real, coefficient};
+use crate::sample::SampleGuard;
+use crate::setpoint::Setpoint;
+
+/// A whole control loop for one sampling period: PID, compensator `C`, limits, set-point, anti-windup, modes, bad
+/// samples, alarms, in the order of the [module](crate::controller).
+///
+/// A step is total: for every bit pattern of every input the output is finite and in its range, the state finite.
+/// Cost: the sum of its blocks plus about 120 instructions; the first step of a zeroed state also fills the delay
+/// line. It does not depend on the data beyond the branches of the modes.
+///
+/// ```
+/// use controller_core::{Controller, ControllerConfig, ControllerInput, LimitConfig, PidConfig};
+/// let config = ControllerConfig {
+///     pid: PidConfig { kp: 2.0, ki: 0.5, ..PidConfig::default() },
+///     limits: LimitConfig::range(0.0, 100.0),
+///     ..ControllerConfig::default()
+/// };
+/// let law = Controller::<f32>::new(&config, 0.1).unwrap();
+/// let mut state = law.zeroed();
+/// law.settle(&mut state, 20.0, 20.0, 30.0);
+/// let out = law.step(&mut state, &ControllerInput { r: 25.0, y: 20.0, ..ControllerInput::default() });
+/// assert_eq!(out.u, 30.0 + 2.0 * 5.0 + 0.25);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Controller<T, C = NoCompensator> {
+    pub(super) pid: Pid<T>,
+    pub(super) compensator: C,
+    pub(super) limit: Limit<T>,
+    pub(super) setpoint: Setpoint<T>,
+    pub(super) anti_windup: AntiWindup<T>,
+    pub(super) deadband: Deadband<T>,
+    pub(super) guard: SampleGuard<T>,
+    pub(super) alarms: Alarms<T>,
+    pub(super) offset_lo: T,
+    pub(super) offset_hi: T,
+    pub(super) off_output: Option<T>,
+    pub(super) initial_output: T,
+    pub(super) integral_bound: T,
+    pub(super) reversed: bool,
+    pub(super) ts: T,
+}
+
+impl<T: Real> Controller<T, NoCompensator> {
+    /// A loop without a compensator.
+    ///
+    /// # Errors
+    /// As [`with_compensator`](Self::with_compensator).
+    pub fn new(config: &ControllerConfig, ts: f64) -> Result<Self, ConfigErrors> {
+        Self::with_compensator(config, NoCompensator, ts)
+    }
+}
+
+impl<T: Real, C: Compensate<T>> Controller<T, C> {
+    /// A loop with the compensator law `compensator`, built for the same sampling period `ts` [s].
+    ///
+    /// # Errors
+    /// Every fault of every part, all at once: see each part's `new`. Gains and ranges whose product could overflow
+    /// `T` on the way are refused as [`Param::Overflow`].
+    pub fn with_compensator(
+        config: &ControllerConfig,
+        compensator: C,
+        ts: f64,
+    ) -> Result<Self, ConfigErrors> {
+        let mut check = Checker::default();
+        let pid = check.merge(Pid::new(&config.pid, ts));
+        let limit = check.merge(Limit::new(&config.limits, ts));
+        let setpoint = check.merge(Setpoint::new(&config.setpoint, ts));
+        let anti_windup = check.merge(AntiWindup::new(&config.anti_windup, &config.pid, ts));
+        let deadband = check.merge(Deadband::new(config.deadband));
+        let guard =
+            check.merge(SampleGuard::new(&config.fallback, config.measurement_lo, config.measurement_hi, ts));
+        let alarms = check.merge(Alarms::new(&config.alarms));
+        let offsets = ((Param::OffsetLo, config.offset_lo), (Param::OffsetHi, config.offset_hi));
+        check.bounds(offsets.0, offsets.1, RANGE_LIMIT);
+        check.optional(Param::OffOutput, config.off_output, -RANGE_LIMIT, RANGE_LIMIT);
+        check.range(Param::InitialOutput, config.initial_output, -RANGE_LIMIT, RANGE_LIMIT);
+        if let (true, Some(pid)) = (check.is_clean(), &pid) {
+            Self::check_overflow(&mut check, config, pid, &compensator);
+        }
+        let parts = (pid, limit, setpoint, anti_windup, deadband, guard, alarms);
+        let (
+            Some(pid),
+            Some(limit),
+            Some(setpoint),
+            Some(anti_windup),
+            Some(deadband),
+            Some(guard),
+            Some(alarms),
+        ) = parts
+        else {
+            // A part is missing only when its faults are in `check`; this says so to the type system.
+            check.into_result()?;
+            return Err(ConfigErrors::default());
+        };
+        check.finish(Self {
+            pid,
+            compensator,
+            limit,
+            setpoint,
+            anti_windup,
+            deadband,
+            guard,
+            alarms,
+            offset_lo: coefficient(config.offset_lo),
+            offset_hi: coefficient(config.offset_hi),
+            off_output: config.off_output.map(coefficient),
+            initial_output: limit.into_range(coefficient(config.initial_output)),
+            integral_bound: T::from_f64(1e-3 * T::LARGEST),
+            reversed: {
+                let [kp, ki, _] = config.pid.signed_gains();
+                ki < 0.0 || (ki == 0.0 && kp < 0.0)
+            },
+            ts: coefficient(ts),
+        })
+    }
+
+    /// No product or sum of a step may leave a millionth of the number type's range.
+    fn check_overflow(check: &mut Checker, config: &ControllerConfig, pid: &Pid<T>, compensator: &C) {
+        let larger = |a: f64, b: f64| if a.abs() > b.abs() { a.abs() } else { b.abs() };
+        let y = larger(config.measurement_lo, config.measurement_hi);
+        let r = larger(config.setpoint.lo, config.setpoint.hi);
+        let u = larger(config.limits.lo, config.limits.hi);
+        let signal = y + r + config.deadband.abs();
+        let (from_y, from_u) = compensator.bounds();
+        let worst = pid.bound() * signal + from_y * y + from_u * u;
+        let most = 1e-6 * T::LARGEST;
+        if worst.is_nan() || worst > most {
+            check.fault(Param::Overflow, Reason::OutOfRange, worst, 0.0, most);
+        }
+    }
+
+    /// The PID law.
+    #[must_use]
+    pub fn pid(&self) -> &Pid<T> {
+        &self.pid
+    }
+
+    /// The compensator law.
+    #[must_use]
+    pub fn compensator(&self) -> &C {
+        &self.compensator
+    }
+
+    /// The output's range [u].
+    #[must_use]
+    pub fn output_range(&self) -> (T, T) {
+        (self.limit.lo(), self.limit.hi())
+    }
+}

@@ -1,0 +1,143 @@
+//! The state of a loop.
+
+use crate::mode::Mode;
+use crate::pid::PidState;
+use crate::real::Real;
+use crate::sample::SampleGuardState;
+use crate::snapshot::{Reader, Writer};
+use crate::status::Status;
+
+/// State of a [`Controller`](crate::Controller) with compensator state `S`.
+///
+/// A default (zeroed) state settles itself on its first good sample; an explicit start is
+/// [`Controller::settle`](crate::Controller::settle).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ControllerState<T, S> {
+    pub(super) pid: PidState<T>,
+    pub(super) compensator: S,
+    pub(super) guard: SampleGuardState,
+    /// Mode in force in the last sample.
+    pub(super) mode: Mode,
+    /// Last output, limited.
+    pub(super) u: T,
+    /// Last output before the limits.
+    pub(super) v: T,
+    /// Last filtered terms.
+    pub(super) pd: T,
+    /// Last output of the compensator that was in use.
+    pub(super) u_f: T,
+    /// Last good measurement.
+    pub(super) y: T,
+    /// Working set-point.
+    pub(super) r: T,
+    /// Last usable set-point as asked for.
+    pub(super) r_asked: T,
+    /// Last usable offset.
+    pub(super) offset: T,
+    pub(super) alarms: Status,
+    pub(super) compensating: bool,
+    pub(super) overrun: bool,
+    /// The state has taken a sample: `u` says something.
+    pub(super) awake: bool,
+    /// The state has taken a good sample or was settled.
+    pub(super) started: bool,
+}
+
+impl<T: Real, S: Default> Default for ControllerState<T, S> {
+    fn default() -> Self {
+        Self::over(S::default())
+    }
+}
+
+/// Words of the part of the state that has the same size in every loop, in numbers and in flags.
+const NUMBERS: usize = 9 + 8;
+const FLAGS: usize = 3;
+
+impl<T: Real, S> ControllerState<T, S> {
+    /// A zeroed state over the compensator's state.
+    #[must_use]
+    pub fn over(compensator: S) -> Self {
+        Self {
+            pid: PidState::default(),
+            compensator,
+            guard: SampleGuardState::default(),
+            mode: Mode::Hold,
+            u: T::ZERO,
+            v: T::ZERO,
+            pd: T::ZERO,
+            u_f: T::ZERO,
+            y: T::ZERO,
+            r: T::ZERO,
+            r_asked: T::ZERO,
+            offset: T::ZERO,
+            alarms: Status::NONE,
+            compensating: false,
+            overrun: false,
+            awake: false,
+            started: false,
+        }
+    }
+
+    /// The last output [u].
+    #[must_use]
+    pub fn u(&self) -> T {
+        self.u
+    }
+
+    /// The mode in force in the last sample.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Whether the state has seen a good sample or has been settled.
+    #[must_use]
+    pub fn is_started(&self) -> bool {
+        self.started
+    }
+
+    /// The compensator's state.
+    #[must_use]
+    pub fn compensator(&self) -> &S {
+        &self.compensator
+    }
+
+    /// The state of the PID.
+    #[must_use]
+    pub fn pid(&self) -> &PidState<T> {
+        &self.pid
+    }
+
+    /// Words of everything but the compensator.
+    pub(super) const fn own_words() -> usize {
+        NUMBERS * T::WORDS + FLAGS
+    }
+
+    pub(super) fn save_own(&self, writer: &mut Writer<'_>) {
+        writer.numbers(&self.pid.parts());
+        writer.numbers(&[self.u, self.v, self.pd, self.u_f, self.y, self.r, self.r_asked, self.offset]);
+        let g = &self.guard;
+        let flags = [g.fallback, g.settle, self.compensating, self.overrun, self.awake, self.started];
+        let bits = flags.iter().enumerate().fold(0, |word, (i, &flag)| word | u32::from(flag) << i);
+        writer.word(bits | u32::from(self.mode as u8) << 8);
+        writer.word(u32::from(self.guard.bad));
+        writer.word(self.alarms.bits());
+    }
+
+    pub(super) fn restore_own(&mut self, reader: &mut Reader<'_>) -> Option<()> {
+        self.pid = PidState::from_parts(reader.numbers()?);
+        [self.u, self.v, self.pd, self.u_f, self.y, self.r, self.r_asked, self.offset] = reader.numbers()?;
+        let word = reader.word()?;
+        let flag = |i: u32| word >> i & 1 == 1;
+        self.guard.fallback = flag(0);
+        self.guard.settle = flag(1);
+        self.compensating = flag(2);
+        self.overrun = flag(3);
+        self.awake = flag(4);
+        self.started = flag(5);
+        self.mode = Mode::from_number(u8::try_from(word >> 8).ok()?)?;
+        self.guard.bad = u16::try_from(reader.word()?).ok()?;
+        self.alarms = Status::from_bits(reader.word()?);
+        Some(())
+    }
+}

@@ -1,0 +1,199 @@
+//! Whether a measurement may be used, and what a loop does while none may.
+
+use crate::error::{Checker, ConfigErrors, Param};
+use crate::limit::RANGE_LIMIT;
+use crate::real::{Real, coefficient};
+
+/// How good the sender says a measurement is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u8)]
+pub enum Quality {
+    /// Use it.
+    #[default]
+    Good = 0,
+    /// Use it, and say so in the status.
+    Uncertain = 1,
+    /// Do not use it.
+    Bad = 2,
+}
+
+/// What the output does when the measurement has been bad for longer than `hold_samples`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum FallbackAction {
+    /// Stays where it is.
+    #[default]
+    Hold,
+    /// Goes to `output` [u] (within the rate limit).
+    Substitute {
+        /// The output to go to [u].
+        output: f64,
+    },
+    /// Goes to `output` [u] at `rate` [u/s].
+    Ramp {
+        /// The output to go to [u].
+        output: f64,
+        /// How fast [u/s], above 0.
+        rate: f64,
+    },
+}
+
+/// When a loop closes again after a fallback.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FallbackReturn {
+    /// With the first good measurement.
+    #[default]
+    Automatic,
+    /// With the first good measurement that comes together with an acknowledgement.
+    Acknowledged,
+}
+
+/// The policy for bad measurements.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FallbackConfig {
+    /// Bad samples in a row for which output and terms are simply held; default 3.
+    pub hold_samples: u16,
+    /// What to do after that.
+    pub action: FallbackAction,
+    /// How to come back.
+    pub back: FallbackReturn,
+}
+
+impl Default for FallbackConfig {
+    fn default() -> Self {
+        Self { hold_samples: 3, action: FallbackAction::Hold, back: FallbackReturn::Automatic }
+    }
+}
+
+impl FallbackConfig {
+    /// The same configuration with every number rounded to `T`.
+    #[must_use]
+    pub fn rounded<T: Real>(&self) -> Self {
+        let round = |x: f64| T::from_f64(x).to_f64();
+        let action = match self.action {
+            FallbackAction::Hold => FallbackAction::Hold,
+            FallbackAction::Substitute { output } => FallbackAction::Substitute { output: round(output) },
+            FallbackAction::Ramp { output, rate } => {
+                FallbackAction::Ramp { output: round(output), rate: round(rate) }
+            }
+        };
+        Self { action, ..*self }
+    }
+}
+
+/// What a loop may do with the measurement of this sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Use it.
+    Use,
+    /// Use it after settling everything at it: the loop has been without one for long.
+    UseAfterSettling,
+    /// Hold the output for now.
+    Hold,
+    /// The fallback is in force.
+    Fallback,
+    /// The measurement is good, but the fallback waits for an acknowledgement.
+    Await,
+}
+
+/// State of a [`SampleGuard`]: bad samples in a row, and whether the fallback is in force.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SampleGuardState {
+    pub(crate) bad: u16,
+    pub(crate) fallback: bool,
+    pub(crate) settle: bool,
+}
+
+/// Judges measurements: finite, in range, not marked bad; counts bad ones; decides on hold, fallback and return.
+///
+/// Law: up to `hold_samples` bad samples in a row are held without re-initialisation; the next one starts the
+/// fallback; a good one ends it, at once or with an acknowledgement, by settling at the measurement.
+/// Cost: 2 compares and a few integer instructions.
+///
+/// ```
+/// use controller_core::{FallbackConfig, Quality, SampleGuard, SampleGuardState, Verdict};
+/// let guard = SampleGuard::<f32>::new(&FallbackConfig { hold_samples: 1, ..FallbackConfig::default() }, -10.0, 110.0, 0.1).unwrap();
+/// let mut state = SampleGuardState::default();
+/// assert_eq!(guard.judge(&mut state, 20.0, Quality::Good, false), Verdict::Use);
+/// assert_eq!(guard.judge(&mut state, f32::NAN, Quality::Good, false), Verdict::Hold);
+/// assert_eq!(guard.judge(&mut state, 850.0, Quality::Good, false), Verdict::Fallback);
+/// assert_eq!(guard.judge(&mut state, 21.0, Quality::Good, false), Verdict::UseAfterSettling);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SampleGuard<T> {
+    lo: T,
+    hi: T,
+    hold_samples: u16,
+    acknowledged: bool,
+    target: Option<T>,
+    step: T,
+}
+
+impl<T: Real> SampleGuard<T> {
+    /// A guard for measurements in `lo..=hi` [y] sampled every `ts` [s].
+    ///
+    /// # Errors
+    /// A range that is not finite, larger than 1e12 or empty; a fallback output that is not finite or larger than
+    /// 1e12; a rate that is not above 0.
+    pub fn new(config: &FallbackConfig, lo: f64, hi: f64, ts: f64) -> Result<Self, ConfigErrors> {
+        let mut check = Checker::default();
+        check.bounds((Param::MeasurementLo, lo), (Param::MeasurementHi, hi), RANGE_LIMIT);
+        let free = 4.0 * RANGE_LIMIT;
+        let (target, step) = match config.action {
+            FallbackAction::Hold => (None, free),
+            FallbackAction::Substitute { output } => (Some(output), free),
+            FallbackAction::Ramp { output, rate } => {
+                check.range(Param::FallbackRate, rate, f64::MIN_POSITIVE, 1e15);
+                (Some(output), (rate * ts).min(free))
+            }
+        };
+        check.optional(Param::FallbackOutput, target, -RANGE_LIMIT, RANGE_LIMIT);
+        check.finish(Self {
+            lo: T::from_f64(lo),
+            hi: T::from_f64(hi),
+            hold_samples: config.hold_samples,
+            acknowledged: config.back == FallbackReturn::Acknowledged,
+            target: target.map(coefficient),
+            step: coefficient(step),
+        })
+    }
+
+    /// Judges the measurement `y` of quality `quality`.
+    #[inline]
+    pub fn judge(&self, state: &mut SampleGuardState, y: T, quality: Quality, acknowledge: bool) -> Verdict {
+        let good = y >= self.lo && y <= self.hi && quality != Quality::Bad;
+        if !good {
+            if state.bad >= self.hold_samples {
+                state.fallback = true;
+            } else {
+                state.bad += 1;
+            }
+            return if state.fallback { Verdict::Fallback } else { Verdict::Hold };
+        }
+        if state.fallback && self.acknowledged && !acknowledge {
+            return Verdict::Await;
+        }
+        let settle = state.fallback || state.settle;
+        *state = SampleGuardState::default();
+        if settle { Verdict::UseAfterSettling } else { Verdict::Use }
+    }
+
+    /// Tells the guard that `n` samples were lost: more than may be held means settling at the next good one.
+    pub fn lost(&self, state: &mut SampleGuardState, n: u32) {
+        state.settle |= n > u32::from(self.hold_samples);
+    }
+
+    /// Where the fallback takes the output next [u], from `u`.
+    #[must_use]
+    pub fn fallback_output(&self, u: T) -> T {
+        match self.target {
+            None => u,
+            Some(target) => target.clamp_to(u - self.step, u + self.step),
+        }
+    }
+
+    /// The measurement's range [y].
+    #[must_use]
+    pub fn range(&self) -> (T, T) {
+        (self.lo, self.hi)
+    }
+}

@@ -1,0 +1,122 @@
+//! Set-point conditioning: range, rate, following the measurement.
+
+use crate::error::{Checker, ConfigErrors, Param};
+use crate::limit::RANGE_LIMIT;
+use crate::real::{Real, coefficient};
+
+/// Range and rate of a set-point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetpointConfig {
+    /// Lowest set-point [y]; default -1e6.
+    pub lo: f64,
+    /// Highest set-point [y], above `lo`; default 1e6.
+    pub hi: f64,
+    /// Fastest rise [y/s], above 0; `None`: no limit.
+    pub rate_up: Option<f64>,
+    /// Fastest fall [y/s], above 0; `None`: no limit.
+    pub rate_down: Option<f64>,
+    /// In Off, Manual and Track the working set-point follows the measurement (`sp_track`).
+    pub track: bool,
+}
+
+impl Default for SetpointConfig {
+    fn default() -> Self {
+        Self { lo: -1e6, hi: 1e6, rate_up: None, rate_down: None, track: false }
+    }
+}
+
+impl SetpointConfig {
+    /// The same configuration with every number rounded to `T`.
+    #[must_use]
+    pub fn rounded<T: Real>(&self) -> Self {
+        let round = |x: f64| T::from_f64(x).to_f64();
+        Self {
+            lo: round(self.lo),
+            hi: round(self.hi),
+            rate_up: self.rate_up.map(round),
+            rate_down: self.rate_down.map(round),
+            track: self.track,
+        }
+    }
+}
+
+/// A set-point conditioner for one sampling period. Its state is one number, the working set-point.
+///
+/// Law: `w[k] = clamp(clamp(r[k], lo, hi), w[k-1] - ts*rate_down, w[k-1] + ts*rate_up)`; after the range itself has
+/// moved, the working set-point ramps back into it. Cost: 4 compares, 2 additions.
+///
+/// ```
+/// use controller_core::{Setpoint, SetpointConfig};
+/// let config = SetpointConfig { lo: 0.0, hi: 90.0, rate_up: Some(10.0), ..SetpointConfig::default() };
+/// let setpoint = Setpoint::<f64>::new(&config, 0.5).unwrap();
+/// let mut w = setpoint.start(200.0, 20.0); // a ramp starts at the measurement
+/// assert_eq!(w, 20.0);
+/// w = setpoint.advance(w, 200.0);
+/// assert_eq!(w, 25.0);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setpoint<T> {
+    lo: T,
+    hi: T,
+    up: T,
+    down: T,
+    ramps: bool,
+    track: bool,
+}
+
+impl<T: Real> Setpoint<T> {
+    /// The conditioner for the sampling period `ts` [s].
+    ///
+    /// # Errors
+    /// Bounds that are not finite, larger than 1e12 or leave no room; rates that are not above 0.
+    pub fn new(config: &SetpointConfig, ts: f64) -> Result<Self, ConfigErrors> {
+        let mut check = Checker::default();
+        check.bounds((Param::SetpointLo, config.lo), (Param::SetpointHi, config.hi), RANGE_LIMIT);
+        check.optional(Param::SetpointRateUp, config.rate_up, f64::MIN_POSITIVE, 1e15);
+        check.optional(Param::SetpointRateDown, config.rate_down, f64::MIN_POSITIVE, 1e15);
+        // Twice the largest range: never active, and finite.
+        let free = 4.0 * RANGE_LIMIT;
+        let per_sample = |rate: Option<f64>| rate.map_or(free, |r| (r * ts).min(free));
+        check.finish(Self {
+            lo: T::from_f64(config.lo),
+            hi: T::from_f64(config.hi),
+            up: coefficient(per_sample(config.rate_up)),
+            down: coefficient(per_sample(config.rate_down)),
+            ramps: config.rate_up.is_some() || config.rate_down.is_some(),
+            track: config.track,
+        })
+    }
+
+    /// The working set-point to begin with [y]: the set-point, or the measurement `y` when a rate is given or the
+    /// set-point follows the measurement.
+    #[must_use]
+    pub fn start(&self, r: T, y: T) -> T {
+        self.into_range(if self.ramps || self.track { y } else { r })
+    }
+
+    /// The next working set-point after `working` [y].
+    #[must_use]
+    #[inline(always)]
+    pub fn advance(&self, working: T, r: T) -> T {
+        self.into_range(r).clamp_to(working - self.down, working + self.up)
+    }
+
+    /// `r` moved into the range [y].
+    #[must_use]
+    #[inline(always)]
+    pub fn into_range(&self, r: T) -> T {
+        r.clamp_to(self.lo, self.hi)
+    }
+
+    /// Whether the working set-point follows the measurement while the loop is open.
+    #[must_use]
+    pub fn tracks(&self) -> bool {
+        self.track
+    }
+
+    /// The range [y].
+    #[must_use]
+    pub fn range(&self) -> (T, T) {
+        (self.lo, self.hi)
+    }
+}
