@@ -5,7 +5,7 @@ use crate::limit::RANGE_LIMIT;
 use crate::real::{Real, coefficient};
 use crate::status::Status;
 
-/// Alarm levels [y]; `None`: no such alarm.
+/// Alarm levels \[y\]; `None`: no such alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AlarmConfig {
     /// Measurement very high.

@@ -8,9 +8,9 @@ use crate::real::{Real, coefficient};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AntiWindupConfig {
     /// `I += min(1, ts/tt)*(a - v)` with the applied output `a` and the wanted `v` (offset and estimator
-    /// included). `tt` [s], above 0; `None`: `max(kp/ki, tf, ts)`.
+    /// included). `tt` \[s\], above 0; `None`: `max(kp/ki, tf, ts)`.
     BackCalculation {
-        /// Tracking time constant [s].
+        /// Tracking time constant \[s\].
         tt: Option<f64>,
     },
     /// Takes back the increment that was just added when it drove further into the limit.
@@ -49,7 +49,7 @@ pub struct AntiWindup<T> {
 }
 
 impl<T: Real> AntiWindup<T> {
-    /// The rule for a controller `pid` sampled every `ts` [s]. Without an integral term (`ki = 0`) the rule does
+    /// The rule for a controller `pid` sampled every `ts` \[s\]. Without an integral term (`ki = 0`) the rule does
     /// nothing: the term is a fixed bias.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl<T: Real> AntiWindup<T> {
         })
     }
 
-    /// What to add to the integral term [u]: `increment` is what the last sample added, `v` the output it wanted,
+    /// What to add to the integral term \[u\]: `increment` is what the last sample added, `v` the output it wanted,
     /// `applied` the output that was applied.
     #[must_use]
     #[inline(always)]

@@ -23,7 +23,7 @@ pub struct Deadband<T> {
 }
 
 impl<T: Real> Deadband<T> {
-    /// A band from `-width` to `width` [y].
+    /// A band from `-width` to `width` \[y\].
     ///
     /// # Errors
     /// `width` not finite, negative or above 1e12.
@@ -33,7 +33,7 @@ impl<T: Real> Deadband<T> {
         check.finish(Self { width: coefficient(width) })
     }
 
-    /// The measurement as the PID is to see it [y].
+    /// The measurement as the PID is to see it \[y\].
     #[must_use]
     #[inline(always)]
     pub fn apply(&self, r: T, y: T) -> T {

@@ -9,9 +9,9 @@ pub(crate) const RANGE_LIMIT: f64 = 1e12;
 /// Range and rate of an output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitConfig {
-    /// Lowest output [u]; default -1e6.
+    /// Lowest output \[u\]; default -1e6.
     pub lo: f64,
-    /// Highest output [u], above `lo`; default 1e6.
+    /// Highest output \[u\], above `lo`; default 1e6.
     pub hi: f64,
     /// Fastest rise [u/s], above 0; `None`: no limit.
     pub rate_up: Option<f64>,
@@ -70,7 +70,7 @@ pub struct Limit<T> {
 /// A limited output and which limit was active.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limited<T> {
-    /// The output [u].
+    /// The output \[u\].
     pub u: T,
     /// At the upper limit.
     pub high: bool,
@@ -81,7 +81,7 @@ pub struct Limited<T> {
 }
 
 impl<T: Real> Limit<T> {
-    /// The limiter for the sampling period `ts` [s].
+    /// The limiter for the sampling period `ts` \[s\].
     ///
     /// # Errors
     /// Bounds that are not finite, larger than 1e12 or leave no room; rates that are not above 0.
@@ -101,7 +101,7 @@ impl<T: Real> Limit<T> {
         })
     }
 
-    /// Limits `v` [u] after an output `before` [u].
+    /// Limits `v` \[u\] after an output `before` \[u\].
     #[must_use]
     #[inline(always)]
     pub fn apply(&self, before: T, v: T) -> Limited<T> {
@@ -117,13 +117,13 @@ impl<T: Real> Limit<T> {
         v.clamp_to(self.lo, self.hi)
     }
 
-    /// Lowest output [u].
+    /// Lowest output \[u\].
     #[must_use]
     pub fn lo(&self) -> T {
         self.lo
     }
 
-    /// Highest output [u].
+    /// Highest output \[u\].
     #[must_use]
     pub fn hi(&self) -> T {
         self.hi

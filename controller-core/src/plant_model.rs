@@ -23,7 +23,7 @@ pub const MAX_FACTORS: usize = MAX_ORDER + 1;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Factor {
-    /// Coefficient of `s` [s].
+    /// Coefficient of `s` \[s\].
     pub a1: f64,
     /// Coefficient of `s^2` [s^2]; 0 for a first-order factor.
     pub a2: f64,
@@ -51,7 +51,7 @@ impl Factor {
 
 /// A plant model: `gain * prod(zeros) * exp(-s*dead_time) / (s^integrators * prod(poles))`.
 ///
-/// Units: with an output in `[y]` and an input in `[u]`, `gain` is `[y/u/s^integrators]`; times in seconds.
+/// Units: with an output in `\[y\]` and an input in `\[u\]`, `gain` is `[y/u/s^integrators]`; times in seconds.
 ///
 /// ```
 /// use controller_core::plant_model::{Factor, PlantModel};
@@ -70,7 +70,7 @@ pub struct PlantModel {
     pub poles: Vec<Factor, MAX_FACTORS>,
     /// Numerator factors; any sign.
     pub zeros: Vec<Factor, MAX_FACTORS>,
-    /// Dead time [s], `>= 0`.
+    /// Dead time \[s\], `>= 0`.
     pub dead_time: f64,
 }
 
@@ -100,7 +100,7 @@ impl PlantModel {
         self
     }
 
-    /// The same model with another dead time [s].
+    /// The same model with another dead time \[s\].
     #[must_use]
     pub fn with_dead_time(mut self, dead_time: f64) -> Self {
         self.dead_time = dead_time;
@@ -136,7 +136,7 @@ impl PlantModel {
 }
 
 impl Factor {
-    /// The factor as `(1 + slow*s)*(1 + fast*s)`, `slow >= fast` [s], or `None` when its roots are complex.
+    /// The factor as `(1 + slow*s)*(1 + fast*s)`, `slow >= fast` \[s\], or `None` when its roots are complex.
     /// A first-order factor gives `fast = 0`.
     ///
     /// ```

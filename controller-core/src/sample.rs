@@ -23,14 +23,14 @@ pub enum FallbackAction {
     /// Stays where it is.
     #[default]
     Hold,
-    /// Goes to `output` [u] (within the rate limit).
+    /// Goes to `output` \[u\] (within the rate limit).
     Substitute {
-        /// The output to go to [u].
+        /// The output to go to \[u\].
         output: f64,
     },
-    /// Goes to `output` [u] at `rate` [u/s].
+    /// Goes to `output` \[u\] at `rate` [u/s].
     Ramp {
-        /// The output to go to [u].
+        /// The output to go to \[u\].
         output: f64,
         /// How fast [u/s], above 0.
         rate: f64,
@@ -129,7 +129,7 @@ pub struct SampleGuard<T> {
 }
 
 impl<T: Real> SampleGuard<T> {
-    /// A guard for measurements in `lo..=hi` [y] sampled every `ts` [s].
+    /// A guard for measurements in `lo..=hi` \[y\] sampled every `ts` \[s\].
     ///
     /// # Errors
     /// A range that is not finite, larger than 1e12 or empty; a fallback output that is not finite or larger than
@@ -182,7 +182,7 @@ impl<T: Real> SampleGuard<T> {
         state.settle |= n > u32::from(self.hold_samples);
     }
 
-    /// Where the fallback takes the output next [u], from `u`.
+    /// Where the fallback takes the output next \[u\], from `u`.
     #[must_use]
     pub fn fallback_output(&self, u: T) -> T {
         match self.target {
@@ -191,7 +191,7 @@ impl<T: Real> SampleGuard<T> {
         }
     }
 
-    /// The measurement's range [y].
+    /// The measurement's range \[y\].
     #[must_use]
     pub fn range(&self) -> (T, T) {
         (self.lo, self.hi)

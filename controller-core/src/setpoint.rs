@@ -7,9 +7,9 @@ use crate::real::{Real, coefficient};
 /// Range and rate of a set-point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetpointConfig {
-    /// Lowest set-point [y]; default -1e6.
+    /// Lowest set-point \[y\]; default -1e6.
     pub lo: f64,
-    /// Highest set-point [y], above `lo`; default 1e6.
+    /// Highest set-point \[y\], above `lo`; default 1e6.
     pub hi: f64,
     /// Fastest rise [y/s], above 0; `None`: no limit.
     pub rate_up: Option<f64>,
@@ -65,7 +65,7 @@ pub struct Setpoint<T> {
 }
 
 impl<T: Real> Setpoint<T> {
-    /// The conditioner for the sampling period `ts` [s].
+    /// The conditioner for the sampling period `ts` \[s\].
     ///
     /// # Errors
     /// Bounds that are not finite, larger than 1e12 or leave no room; rates that are not above 0.
@@ -87,21 +87,21 @@ impl<T: Real> Setpoint<T> {
         })
     }
 
-    /// The working set-point to begin with [y]: the set-point, or the measurement `y` when a rate is given or the
+    /// The working set-point to begin with \[y\]: the set-point, or the measurement `y` when a rate is given or the
     /// set-point follows the measurement.
     #[must_use]
     pub fn start(&self, r: T, y: T) -> T {
         self.into_range(if self.ramps || self.track { y } else { r })
     }
 
-    /// The next working set-point after `working` [y].
+    /// The next working set-point after `working` \[y\].
     #[must_use]
     #[inline(always)]
     pub fn advance(&self, working: T, r: T) -> T {
         self.into_range(r).clamp_to(working - self.down, working + self.up)
     }
 
-    /// `r` moved into the range [y].
+    /// `r` moved into the range \[y\].
     #[must_use]
     #[inline(always)]
     pub fn into_range(&self, r: T) -> T {
@@ -114,7 +114,7 @@ impl<T: Real> Setpoint<T> {
         self.track
     }
 
-    /// The range [y].
+    /// The range \[y\].
     #[must_use]
     pub fn range(&self) -> (T, T) {
         (self.lo, self.hi)

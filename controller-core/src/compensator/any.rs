@@ -51,7 +51,7 @@ pub struct AnyCompensatorState<T, M> {
 }
 
 impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
-    /// Discretises `config` for the sampling period `ts` [s] and delay memory of `capacity` samples.
+    /// Discretises `config` for the sampling period `ts` \[s\] and delay memory of `capacity` samples.
     ///
     /// # Errors
     /// Every fault of [`CompensatorConfig::validate`].

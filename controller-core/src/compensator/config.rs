@@ -11,15 +11,15 @@ use crate::real::Real;
 pub struct EstimatorConfig {
     /// Static gain `K_PRM` of the model [y/u], not 0.
     pub gain: f64,
-    /// Coefficient `a_1m` [s], above 0.
+    /// Coefficient `a_1m` \[s\], above 0.
     pub a1: f64,
     /// Coefficient `a_2m` [s^2], 0 (a first-order model) or more.
     pub a2: f64,
-    /// Dead time of the model [s], 0 or more.
+    /// Dead time of the model \[s\], 0 or more.
     pub dead_time: f64,
     /// Gain `K_FD`, 0 to 1.
     pub kfd: f64,
-    /// Filter time constant `T_FD` [s], above 0.
+    /// Filter time constant `T_FD` \[s\], above 0.
     pub tfd: f64,
 }
 
@@ -43,7 +43,7 @@ impl EstimatorConfig {
 pub struct ObserverConfig {
     /// Model of the plant.
     pub model: PlantModel,
-    /// Filter time constant `alpha` [s], above 0.
+    /// Filter time constant `alpha` \[s\], above 0.
     pub alpha: f64,
     /// Filter order `d`; `None`: the smallest possible.
     pub order: Option<usize>,
@@ -81,18 +81,18 @@ pub struct CompensatorConfig {
     pub model: PlantModel,
     /// Share of the estimated disturbance that is fed back, 0 to 1 (1: DOB, `K_FD`: DE).
     pub gain: f64,
-    /// Filter time constant [s], above 0.
+    /// Filter time constant \[s\], above 0.
     pub time_constant: f64,
     /// Filter order `d`; `None`: the smallest possible, which is also the least that may be asked for.
     pub order: Option<usize>,
-    /// Time from reading `y` to acting `u` [s], 0 or more; it is added to the model's dead time.
+    /// Time from reading `y` to acting `u` \[s\], 0 or more; it is added to the model's dead time.
     pub latency: f64,
     /// Names for error messages.
     pub names: FilterNames,
 }
 
 impl CompensatorConfig {
-    /// All faults of this configuration for the sampling period `ts` [s] and a delay line of `capacity` samples.
+    /// All faults of this configuration for the sampling period `ts` \[s\] and a delay line of `capacity` samples.
     ///
     /// # Errors
     /// A model without gain, with an unstable or too fast pole (time constant below `ts/1000`), of order 0 or above

@@ -7,9 +7,9 @@ use crate::real::Real;
 /// What a compensator gives in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CompensatorOutput<T> {
-    /// What to add to the controller's output [u]: `u_f = -gain*d_hat`.
+    /// What to add to the controller's output \[u\]: `u_f = -gain*d_hat`.
     pub u_f: T,
-    /// Estimated disturbance at the plant input [u], relative to the point of initialisation.
+    /// Estimated disturbance at the plant input \[u\], relative to the point of initialisation.
     pub d_hat: T,
 }
 

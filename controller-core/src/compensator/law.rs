@@ -31,7 +31,7 @@ pub type Observer<T, const N: usize, const R: usize> = Compensator<T, N, 0, R>;
 /// ```
 ///
 /// `d + (zeros moved into C_y) = N + E`, `d` the filter order: for an estimator `E = 3 - N`.
-/// Units: `y` [y], `u` [u]. Inputs must be finite (the [`Controller`](crate::Controller) checks them).
+/// Units: `y` \[y\], `u` \[u\]. Inputs must be finite (the [`Controller`](crate::Controller) checks them).
 /// Cost per sample: `6*(2N+E)` operations for the lags, `5N + 2E + 4` for the outputs, one write and one read of the
 /// delay line; no division, and the same on every call. State: `4N + 2E + 2 + R` numbers.
 /// Source: Tena et al. 2022, eqs (26), (27); Vrančić & Huba 2021, eqs (13)-(15).
@@ -72,9 +72,9 @@ pub struct CompensatorState<T, const N: usize, const E: usize, const R: usize> {
 /// What a compensator reads in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CompensatorInput<T> {
-    /// Measurement `y[k]` [y].
+    /// Measurement `y[k]` \[y\].
     pub y: T,
-    /// Output that was applied since the last sample, `u[k-1]` after limits or as read back [u].
+    /// Output that was applied since the last sample, `u[k-1]` after limits or as read back \[u\].
     pub u_applied: T,
 }
 
@@ -100,7 +100,7 @@ fn array<T: Real, const L: usize>(from: &[f64]) -> [T; L] {
 }
 
 impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, E, R> {
-    /// Discretises `config` for the sampling period `ts` [s].
+    /// Discretises `config` for the sampling period `ts` \[s\].
     ///
     /// # Errors
     /// Every fault of [`CompensatorConfig::validate`] for a line of `R` samples; a model whose order is not `N`, or
@@ -135,7 +135,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
         })
     }
 
-    /// An estimator, see [`EstimatorConfig`]; `latency` [s].
+    /// An estimator, see [`EstimatorConfig`]; `latency` \[s\].
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -143,7 +143,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
         Self::new(&config.to_compensator(latency), ts)
     }
 
-    /// An observer, see [`ObserverConfig`]; `latency` [s].
+    /// An observer, see [`ObserverConfig`]; `latency` \[s\].
     ///
     /// # Errors
     /// As [`new`](Self::new).

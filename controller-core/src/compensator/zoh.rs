@@ -79,7 +79,7 @@ fn one() -> Poly {
 }
 
 /// The coefficients `b_0..b_n` of `B/B(1)` for the plant `prod(zeros)/prod(poles)` sampled with the fractional
-/// delay `m` in `0..1` (whole samples are left to the delay line). `ts` [s] scales the zeros.
+/// delay `m` in `0..1` (whole samples are left to the delay line). `ts` \[s\] scales the zeros.
 ///
 /// Method: the plant is a chain `X_i = c_i/(D_1..D_i)` of its poles with coefficients of order one, its output a
 /// combination of the `X_i` (synthetic division of the numerator). The pulse response `h` of the chain follows from

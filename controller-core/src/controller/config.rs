@@ -19,23 +19,23 @@ pub struct ControllerConfig {
     pub setpoint: SetpointConfig,
     /// Anti-windup rule.
     pub anti_windup: AntiWindupConfig,
-    /// Half width of the error deadband [y]; default 0.
+    /// Half width of the error deadband \[y\]; default 0.
     pub deadband: f64,
-    /// Lowest valid measurement [y]; default -1e6.
+    /// Lowest valid measurement \[y\]; default -1e6.
     pub measurement_lo: f64,
-    /// Highest valid measurement [y]; default 1e6.
+    /// Highest valid measurement \[y\]; default 1e6.
     pub measurement_hi: f64,
-    /// Lowest offset [u]; default -1e6.
+    /// Lowest offset \[u\]; default -1e6.
     pub offset_lo: f64,
-    /// Highest offset [u]; default 1e6.
+    /// Highest offset \[u\]; default 1e6.
     pub offset_hi: f64,
     /// Policy for bad measurements.
     pub fallback: FallbackConfig,
     /// Alarms.
     pub alarms: AlarmConfig,
-    /// Output in mode Off [u]; `None`: it stays where it is.
+    /// Output in mode Off \[u\]; `None`: it stays where it is.
     pub off_output: Option<f64>,
-    /// Output of a zeroed state before its first sample [u], taken when no read-back says what is applied; default
+    /// Output of a zeroed state before its first sample \[u\], taken when no read-back says what is applied; default
     /// 0, moved into the output's range.
     pub initial_output: f64,
 }

@@ -10,23 +10,23 @@ use crate::status::Status;
 /// Any bit pattern is allowed in any number; the comments say what happens to an unusable one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControllerInput<T> {
-    /// Local set-point [y]; clamped to its range, the last good one if not finite.
+    /// Local set-point \[y\]; clamped to its range, the last good one if not finite.
     pub r: T,
-    /// Remote set-point [y], used in [`Mode::Cascade`]; treated like `r`.
+    /// Remote set-point \[y\], used in [`Mode::Cascade`]; treated like `r`.
     pub r_remote: T,
-    /// Measurement [y]; not finite or out of range: a bad sample.
+    /// Measurement \[y\]; not finite or out of range: a bad sample.
     pub y: T,
     /// What the sender says of `y`.
     pub quality: Quality,
     /// Requested mode.
     pub mode: Mode,
-    /// Output in [`Mode::Manual`] [u], limited; `None` or not finite: the output stays where it is.
+    /// Output in [`Mode::Manual`] \[u\], limited; `None` or not finite: the output stays where it is.
     pub manual: Option<T>,
-    /// Output in [`Mode::Track`] [u], limited; not finite: the output stays where it is.
+    /// Output in [`Mode::Track`] \[u\], limited; not finite: the output stays where it is.
     pub track: T,
-    /// Offset (feed-forward) added inside the limits [u]; clamped to its range, the last good one if not finite.
+    /// Offset (feed-forward) added inside the limits \[u\]; clamped to its range, the last good one if not finite.
     pub offset: T,
-    /// Output that was really applied since the last sample [u], read back from the actuator or the inner loop;
+    /// Output that was really applied since the last sample \[u\], read back from the actuator or the inner loop;
     /// `None` or not finite: the loop's own last output.
     pub u_applied: Option<T>,
     /// Use the compensator. It runs in any case, so that this can change without a bump.
@@ -62,19 +62,19 @@ impl<T: Real> Default for ControllerInput<T> {
 /// What a [`Controller`](crate::Controller) gives in one sample. Every number is finite, `u` is in its range.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ControllerOutput<T> {
-    /// Output, limited [u].
+    /// Output, limited \[u\].
     pub u: T,
-    /// Output before the limits [u].
+    /// Output before the limits \[u\].
     pub v: T,
-    /// Integral term [u].
+    /// Integral term \[u\].
     pub i: T,
-    /// Filtered proportional and derivative terms [u].
+    /// Filtered proportional and derivative terms \[u\].
     pub pd: T,
-    /// Output of the compensator [u], whether it is used or not.
+    /// Output of the compensator \[u\], whether it is used or not.
     pub u_f: T,
-    /// Estimated disturbance at the plant input [u], relative to the point of initialisation.
+    /// Estimated disturbance at the plant input \[u\], relative to the point of initialisation.
     pub d_hat: T,
-    /// Working set-point [y].
+    /// Working set-point \[y\].
     pub r: T,
     /// For a primary loop whose output is this loop's set-point: a higher set-point cannot act (the primary's
     /// `inhibit_up`). What the primary reads back as its `u_applied` is `r`.

@@ -88,7 +88,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         }
     }
 
-    /// The smallest constant error [y] that still moves the output when the integral term is as large as the output
+    /// The smallest constant error \[y\] that still moves the output when the integral term is as large as the output
     /// range; see [`Pid::resolution`](crate::Pid::resolution).
     #[must_use]
     pub fn resolution(&self) -> f64 {

@@ -62,7 +62,7 @@ impl<T: Real> Controller<T, NoCompensator> {
 }
 
 impl<T: Real, C: Compensate<T>> Controller<T, C> {
-    /// A loop with the compensator law `compensator`, built for the same sampling period `ts` [s].
+    /// A loop with the compensator law `compensator`, built for the same sampling period `ts` \[s\].
     ///
     /// # Errors
     /// Every fault of every part, all at once: see each part's `new`. Gains and ranges whose product could overflow
@@ -152,7 +152,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         &self.compensator
     }
 
-    /// The output's range [u].
+    /// The output's range \[u\].
     #[must_use]
     pub fn output_range(&self) -> (T, T) {
         (self.limit.lo(), self.limit.hi())

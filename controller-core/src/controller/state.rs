@@ -78,7 +78,7 @@ impl<T: Real, S> ControllerState<T, S> {
         }
     }
 
-    /// The last output [u].
+    /// The last output \[u\].
     #[must_use]
     pub fn u(&self) -> T {
         self.u

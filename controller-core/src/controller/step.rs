@@ -178,7 +178,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         Status::NONE
     }
 
-    /// Where a mode wants the output [u]; `None`: where it is.
+    /// Where a mode wants the output \[u\]; `None`: where it is.
     fn target(&self, mode: Mode, u: T, input: &ControllerInput<T>) -> Option<T> {
         match mode {
             Mode::Off => self.off_output,
@@ -189,7 +189,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         }
     }
 
-    /// The anti-windup correction for the sample before [u].
+    /// The anti-windup correction for the sample before \[u\].
     #[inline(always)]
     fn unwind(&self, state: &ControllerState<T, C::State>, sample: &Checked<T>) -> T {
         self.anti_windup.correction(state.pid.increment(), state.v, sample.applied)
@@ -232,7 +232,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         status | Status::REJECTED.when(manual_bad || track_bad)
     }
 
-    /// What was applied since the last sample [u].
+    /// What was applied since the last sample \[u\].
     #[inline(always)]
     fn applied(&self, own: T, read_back: Option<T>) -> (T, Status) {
         match read_back {

@@ -3,11 +3,11 @@
 use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::real::Real;
 
-/// Shortest and longest sampling period of any law [s].
+/// Shortest and longest sampling period of any law \[s\].
 pub(crate) const TS_RANGE: (f64, f64) = (1e-9, 1e9);
 /// Largest size of a gain.
 const GAIN_LIMIT: f64 = 1e15;
-/// Longest time constant [s].
+/// Longest time constant \[s\].
 const TIME_LIMIT: f64 = 1e12;
 
 /// Which way the output moves when the measurement rises.
@@ -46,7 +46,7 @@ pub struct PidConfig {
     pub ki: f64,
     /// Derivative gain [u/y*s], any sign, size up to 1e15; needs `tf > 0`.
     pub kd: f64,
-    /// Time constant of the filter over all terms [s]: `0`, or at least `ts/2` (below `ts` it filters little).
+    /// Time constant of the filter over all terms \[s\]: `0`, or at least `ts/2` (below `ts` it filters little).
     pub tf: f64,
     /// Set-point weight of the proportional term, 0 to 2.
     pub b: f64,
@@ -74,7 +74,7 @@ impl Default for PidConfig {
 }
 
 impl PidConfig {
-    /// All faults of this configuration for the sampling period `ts` [s].
+    /// All faults of this configuration for the sampling period `ts` \[s\].
     ///
     /// # Errors
     /// Every parameter that is not finite or outside the range its field names; `kd != 0` with `tf = 0`.
@@ -120,7 +120,7 @@ impl PidConfig {
         [sign * self.kp, sign * self.ki, sign * self.kd]
     }
 
-    /// Default of the tracking time constant: `max(kp/ki, tf, ts)` [s].
+    /// Default of the tracking time constant: `max(kp/ki, tf, ts)` \[s\].
     #[must_use]
     pub fn default_tt(&self, ts: f64) -> f64 {
         let integral_time = if self.ki == 0.0 { 0.0 } else { self.kp / self.ki };

@@ -12,13 +12,13 @@ use crate::error::{Checker, ConfigErrors, Param};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Measurement at 0 % [y].
+    /// Measurement at 0 % \[y\].
     pub pv_lo: f64,
-    /// Measurement at 100 % [y].
+    /// Measurement at 100 % \[y\].
     pub pv_hi: f64,
-    /// Output at 0 % [u].
+    /// Output at 0 % \[u\].
     pub op_lo: f64,
-    /// Output at 100 % [u].
+    /// Output at 100 % \[u\].
     pub op_hi: f64,
 }
 
@@ -31,8 +31,8 @@ impl Span {
 }
 
 impl PidConfig {
-    /// From the standard (ideal, ISA) form `k*(1 + 1/(ti*s) + td*s)`: gain `k` [u/y], integral time `ti` [s]
-    /// (infinite: no integral term), derivative time `td` [s], filter `tf` [s].
+    /// From the standard (ideal, ISA) form `k*(1 + 1/(ti*s) + td*s)`: gain `k` [u/y], integral time `ti` \[s\]
+    /// (infinite: no integral term), derivative time `td` \[s\], filter `tf` \[s\].
     ///
     /// `kp = k`, `ki = k/ti`, `kd = k*td`. Faults show up in [`PidConfig::validate`].
     ///
@@ -63,7 +63,7 @@ impl PidConfig {
         Self { kp: k * interaction, ki: k / ti, kd: k * td, tf, ..Self::default() }
     }
 
-    /// From a proportional band `pb` [%], with `ti`, `td`, `tf` in seconds: `k = 100/pb * op span / pv span`.
+    /// From a proportional band `pb` \[%\], with `ti`, `td`, `tf` in seconds: `k = 100/pb * op span / pv span`.
     ///
     /// # Errors
     /// `pb` not finite or outside 1e-6..=1e6 %; a span that is not finite or has no width.
@@ -88,7 +88,7 @@ impl PidConfig {
         check.finish(Self::from_standard(100.0 / pb * span.ratio(), ti, td, tf))
     }
 
-    /// From a gain `k` [u/y], a reset rate in repeats per minute and a derivative time `td` [s].
+    /// From a gain `k` [u/y], a reset rate in repeats per minute and a derivative time `td` \[s\].
     ///
     /// `ki = k*repeats/60`.
     ///

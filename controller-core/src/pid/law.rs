@@ -50,13 +50,13 @@ pub struct PidState<T> {
 /// What a [`Pid`] reads in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PidInput<T> {
-    /// Set-point [y].
+    /// Set-point \[y\].
     pub r: T,
-    /// Measurement [y].
+    /// Measurement \[y\].
     pub y: T,
 }
 
-/// What a [`Pid`] gives in one sample [u].
+/// What a [`Pid`] gives in one sample \[u\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PidOutput<T> {
     /// Integral term.
@@ -75,7 +75,7 @@ impl<T: Real> PidOutput<T> {
 }
 
 impl<T: Real> Pid<T> {
-    /// Discretises `config` for the sampling period `ts` [s]; computed in `f64`, each coefficient rounded once.
+    /// Discretises `config` for the sampling period `ts` \[s\]; computed in `f64`, each coefficient rounded once.
     ///
     /// # Errors
     /// Every fault of [`PidConfig::validate`], all at once.
@@ -124,14 +124,14 @@ impl<T: Real> Pid<T> {
         PidOutput { i: state.integral(), pd }
     }
 
-    /// The increment of the integral term that this sample asks for [u].
+    /// The increment of the integral term that this sample asks for \[u\].
     #[must_use]
     #[inline(always)]
     pub fn increment(&self, state: &PidState<T>, input: PidInput<T>) -> T {
         self.ki_now * (input.r - input.y) + self.ki_before * (state.r - state.y)
     }
 
-    /// The filtered proportional and derivative terms of this sample [u]; moves the lags, not the integral.
+    /// The filtered proportional and derivative terms of this sample \[u\]; moves the lags, not the integral.
     #[inline(always)]
     pub fn filter(&self, state: &mut PidState<T>, input: PidInput<T>) -> T {
         let r = state.r_lag.advance(self.g, input.r);
@@ -149,7 +149,7 @@ impl<T: Real> Pid<T> {
         (self.p_r * r.value + self.h_r * r.difference) - (self.p_y * y.value + self.h_y * y.difference)
     }
 
-    /// Puts the state at rest at `input`, with the integral term such that the output is `u0` [u]:
+    /// Puts the state at rest at `input`, with the integral term such that the output is `u0` \[u\]:
     /// `w_r = r`, `w_y = y`, `I = u0 - (P_b*r - P_1*y)`.
     pub fn settle(&self, state: &mut PidState<T>, input: PidInput<T>, u0: T) {
         *state = PidState {
@@ -192,7 +192,7 @@ impl<T: Real> Pid<T> {
             + 2.0 * size(self.integral_gain())
     }
 
-    /// The smallest constant error [y] that still moves the integral term when that term is of size `level` [u];
+    /// The smallest constant error \[y\] that still moves the integral term when that term is of size `level` \[u\];
     /// infinite without an integral term.
     ///
     /// The compensated sum loses an increment only below half a unit in the last place of its carry, which itself
@@ -217,7 +217,7 @@ impl<T: Real> Pid<T> {
 }
 
 impl<T: Real> PidState<T> {
-    /// The integral term [u].
+    /// The integral term \[u\].
     #[must_use]
     #[inline(always)]
     pub fn integral(&self) -> T {
@@ -230,7 +230,7 @@ impl<T: Real> PidState<T> {
         PidInput { r: self.r, y: self.y }
     }
 
-    /// The increment that the last sample added to the integral term [u].
+    /// The increment that the last sample added to the integral term \[u\].
     #[must_use]
     #[inline(always)]
     pub fn increment(&self) -> T {
@@ -244,7 +244,7 @@ impl<T: Real> PidState<T> {
         self.integral.add(increment);
     }
 
-    /// Sets the integral term [u].
+    /// Sets the integral term \[u\].
     #[inline(always)]
     pub fn set_integral(&mut self, i: T) {
         self.integral.set(i);
@@ -257,7 +257,7 @@ impl<T: Real> PidState<T> {
         self.increment = T::ZERO;
     }
 
-    /// Moves the integral term by `delta` [u]: anti-windup and bumpless changes.
+    /// Moves the integral term by `delta` \[u\]: anti-windup and bumpless changes.
     #[inline(always)]
     pub fn shift_integral(&mut self, delta: T) {
         self.integral.add(delta);

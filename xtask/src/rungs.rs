@@ -1,0 +1,246 @@
+//! What each rung of the ladder does.
+
+use std::path::{Path, PathBuf};
+
+use crate::checks;
+use crate::fuzz::{self, Readiness};
+use crate::ladder::{Done, Rung};
+use crate::manifest::Manifest;
+use crate::setup::{self, Toolchain};
+use crate::shell::{Cmd, Outcome, in_ci, target_dir};
+
+/// All rungs, in order.
+pub(crate) const RUNGS: [Rung; 11] = [
+    Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
+    Rung { name: "format", about: "sources are formatted", run: format },
+    Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
+    Rung { name: "test", about: "unit tests, integration tests, doctests", run: test },
+    Rung { name: "docs", about: "documentation builds without a warning", run: docs_rung },
+    Rung { name: "targets", about: "the core builds for every microcontroller target", run: targets },
+    Rung { name: "dependencies", about: "the core depends only on what is allowed", run: dependencies },
+    Rung { name: "same-bits", about: "the same bits at every optimisation level", run: same_bits },
+    Rung { name: "demo", about: "the program without arguments runs its scenario", run: demo },
+    Rung { name: "fuzz", about: "a bounded run of every fuzz target", run: fuzz_rung },
+    Rung { name: "hygiene", about: "files are small, well named and finished", run: hygiene },
+];
+
+/// The crate that is flashed.
+const CORE: &str = "controller-core";
+
+/// The host program.
+const PROGRAM: &str = "controller-sim";
+
+/// What the demo must show.
+const DEMO_NAMES: [&str; 3] = ["MOMI", "DRMO", "DE-MOMI"];
+
+/// The example that prints one hash per trace.
+const TRACE_EXAMPLE: &str = "tests/examples/trace_hash.rs";
+
+/// A way to build the trace example.
+struct Variant {
+    /// Name in messages, and of the folder it is built in.
+    name: &'static str,
+    /// What is different from the plain build.
+    args: &'static [&'static str],
+    /// Flags for the compiler.
+    rustflags: &'static str,
+}
+
+/// The builds whose traces must agree. No debug information: nobody debugs them and they build faster.
+const VARIANTS: [Variant; 5] = [
+    Variant { name: "opt-0", args: &["--config=profile.dev.opt-level=0", NO_DEBUG], rustflags: "" },
+    Variant { name: "opt-1", args: &["--config=profile.dev.opt-level=1", NO_DEBUG], rustflags: "" },
+    Variant { name: "opt-3", args: &["--config=profile.dev.opt-level=3", NO_DEBUG], rustflags: "" },
+    // All instructions of this machine, fused multiply-add among them: the compiler must not use it on its own.
+    Variant {
+        name: "native",
+        args: &["--config=profile.dev.opt-level=3", NO_DEBUG],
+        rustflags: "-C target-cpu=native",
+    },
+    // The profile that is shipped: optimised across crates, overflow checks off.
+    Variant { name: "release", args: &["--release"], rustflags: "" },
+];
+
+/// See [`VARIANTS`].
+const NO_DEBUG: &str = "--config=profile.dev.debug=false";
+
+fn set_up(root: &Path) -> Outcome<Done> {
+    setup::toolchain(root)?;
+    let version = Cmd::new("rustc", root).arg("--version").capture()?;
+    let channel = Toolchain::read(root)?.channel;
+    // `cargo +other xtask test` would check with another compiler than the one that is pinned.
+    if version.split_whitespace().nth(1) != Some(channel.as_str()) {
+        return Err(format!(
+            "the compiler in use is {}, pinned is {channel}: call cargo without `+..`",
+            version.trim()
+        ));
+    }
+    Ok(Done::Passed(version.trim().into()))
+}
+
+fn format(root: &Path) -> Outcome<Done> {
+    Cmd::cargo(root).args(["fmt", "--all", "--check"]).run()?;
+    Done::passed()
+}
+
+fn clippy(root: &Path) -> Outcome<Done> {
+    Cmd::cargo(root).args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]).run()?;
+    Done::passed()
+}
+
+fn test(root: &Path) -> Outcome<Done> {
+    Cmd::cargo(root).args(["test", "--workspace"]).run()?;
+    Done::passed()
+}
+
+/// Builds the documentation; warnings are errors.
+pub(crate) fn docs(root: &Path) -> Outcome {
+    Cmd::cargo(root).env("RUSTDOCFLAGS", "-D warnings").args(["doc", "--workspace", "--no-deps"]).run()
+}
+
+fn docs_rung(root: &Path) -> Outcome<Done> {
+    docs(root)?;
+    Done::passed()
+}
+
+fn targets(root: &Path) -> Outcome<Done> {
+    let targets = Toolchain::read(root)?.targets;
+    let forms = feature_forms(&Manifest::read(&root.join(CORE).join("Cargo.toml"))?);
+    for target in &targets {
+        for form in &forms {
+            Cmd::cargo(root).args(["build", "-p", CORE, "--release", "--target", target]).args(form).run()?;
+        }
+    }
+    Ok(Done::Passed(format!("{} targets, sets of features: {}", targets.len(), forms.len())))
+}
+
+/// The arguments that choose features: the default set, each feature alone, and none at all if that differs.
+fn feature_forms(manifest: &Manifest) -> Vec<Vec<String>> {
+    let mut forms = vec![Vec::new()];
+    if let Some(features) = manifest.table("features") {
+        if !features.list("default").is_empty() {
+            forms.push(vec!["--no-default-features".into()]);
+        }
+        // `std` cannot build where there is none.
+        for feature in features.keys().filter(|key| !["default", "std"].contains(key)) {
+            forms.push(vec!["--no-default-features".into(), "--features".into(), feature.into()]);
+        }
+    }
+    forms
+}
+
+fn dependencies(root: &Path) -> Outcome<Done> {
+    // All targets: a dependency that only one microcontroller pulls in counts as well.
+    let tree = Cmd::cargo(root)
+        .args(["tree", "-p", CORE, "-e", "normal", "--target", "all", "--prefix", "none"])
+        .capture()?;
+    checks::allowed_dependencies(&tree).map(|count| Done::Passed(format!("{count} crates, all allowed")))
+}
+
+fn same_bits(root: &Path) -> Outcome<Done> {
+    if !root.join(TRACE_EXAMPLE).is_file() {
+        return Ok(Done::Skipped("no example trace_hash".into()));
+    }
+    let mut outputs = Vec::new();
+    for variant in &VARIANTS {
+        // A folder of its own for each: a binary left by another variant must never be run by mistake.
+        let folder = target_dir(root).join("same-bits").join(variant.name);
+        let mut cmd = Cmd::cargo(root)
+            .args(["run", "-p", "controller-tests", "--example", "trace_hash", "--target-dir"])
+            .arg(folder)
+            .args(variant.args);
+        if !variant.rustflags.is_empty() {
+            cmd = cmd.env("RUSTFLAGS", variant.rustflags);
+        }
+        outputs.push((variant.name, cmd.capture()?));
+    }
+    let lines = checks::same_output(&outputs)?;
+    Ok(Done::Passed(format!("{lines} traces equal in {} builds", outputs.len())))
+}
+
+fn demo(root: &Path) -> Outcome<Done> {
+    // Built here and started there: outside the workspace cargo would choose another toolchain.
+    Cmd::cargo(root).args(["build", "--release", "-p", "controller-sim-host"]).run()?;
+    let program = target_dir(root).join("release").join(format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX));
+    let folder = TempFolder::new("demo")?;
+    let output = Cmd::new(&program, &folder.0).env("NO_COLOR", "1").capture()?;
+    print!("{output}");
+    checks::mentions(&output, &DEMO_NAMES)?;
+    Done::passed()
+}
+
+fn fuzz_rung(root: &Path) -> Outcome<Done> {
+    let mut readiness = fuzz::readiness(root)?;
+    if matches!(readiness, Readiness::NoTool) && in_ci() {
+        setup::fuzzing(root)?;
+        readiness = fuzz::readiness(root)?;
+    }
+    match readiness {
+        Readiness::NoTargets => Ok(Done::Skipped(format!("no {}", fuzz::MANIFEST))),
+        Readiness::NoTool if in_ci() => Err("cargo-fuzz is still missing after its installation".into()),
+        Readiness::NoTool => Ok(Done::Skipped("cargo-fuzz is missing: cargo xtask setup --fuzz".into())),
+        Readiness::Ready(targets) => {
+            fuzz::run_all(root, &targets, fuzz::ladder_seconds(targets.len()))?;
+            Ok(Done::Passed(targets.join(", ")))
+        }
+    }
+}
+
+fn hygiene(root: &Path) -> Outcome<Done> {
+    checks::hygiene(root).map(|count| Done::Passed(format!("{count} files")))
+}
+
+/// An empty folder that goes away with this value.
+struct TempFolder(PathBuf);
+
+impl TempFolder {
+    fn new(purpose: &str) -> Outcome<Self> {
+        let path = std::env::temp_dir().join(format!("controller-xtask-{purpose}-{}", std::process::id()));
+        std::fs::create_dir(&path).map_err(|e| format!("cannot create {}: {e}", path.display()))?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for TempFolder {
+    fn drop(&mut self) {
+        // Best effort: a folder left behind in the temporary folder harms nobody.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crate_without_features_is_built_once() {
+        assert_eq!(feature_forms(&Manifest::parse("[package]\n")), [Vec::<String>::new()]);
+    }
+
+    #[test]
+    fn each_feature_is_built_alone_but_std() {
+        let manifest =
+            Manifest::parse("[features]\ndefault = [\"trace\"]\nstd = []\ntrace = []\ndefmt = []\n");
+        let forms: Vec<String> = feature_forms(&manifest).iter().map(|form| form.join(" ")).collect();
+        let alone = |feature: &str| format!("--no-default-features --features {feature}");
+        let expected = [String::new(), "--no-default-features".into(), alone("trace"), alone("defmt")];
+        assert_eq!(forms, expected);
+    }
+
+    #[test]
+    fn variants_have_folders_of_their_own() {
+        let mut names: Vec<_> = VARIANTS.iter().map(|variant| variant.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), VARIANTS.len());
+    }
+
+    #[test]
+    fn temporary_folders_go_away() {
+        let folder = TempFolder::new("unit-test").unwrap();
+        let path = folder.0.clone();
+        assert!(path.is_dir());
+        drop(folder);
+        assert!(!path.exists());
+    }
+}
