@@ -207,6 +207,16 @@ impl ConfigErrors {
     pub fn as_slice(&self) -> &[ConfigError] {
         &self.faults
     }
+
+    /// These faults and then those of `other`.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        let mut all = self.clone();
+        for fault in &other.faults {
+            let _ = all.faults.push(*fault);
+        }
+        all
+    }
 }
 
 impl core::ops::Deref for ConfigErrors {

@@ -1,1 +1,6 @@
-//! stub
+//! What the tests that cross crates share: oracles that share no code with the product ([`oracle`]), the papers' cases
+//! as the product's own types ([`cases`]), and a loop of the runtime against an oracle's plant ([`rig`]).
+
+pub mod cases;
+pub mod oracle;
+pub mod rig;

@@ -57,7 +57,8 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     /// Every fault of [`CompensatorConfig::validate`].
     pub fn new(config: &CompensatorConfig, ts: f64, capacity: usize) -> Result<Self, ConfigErrors> {
         config.validate(ts, capacity)?;
-        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } = discretise(config, ts);
+        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
+            discretise::<T>(config, ts);
         let rounded = |list: Vec<f64, MAX_ORDER>| list.iter().map(|&x| coefficient(x)).collect();
         Ok(Self {
             g: rounded(g),
@@ -96,7 +97,8 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     /// Samples of delay memory that a compensator with this configuration needs.
     #[must_use]
     pub fn needed_capacity(config: &CompensatorConfig, ts: f64) -> usize {
-        super::discretise::whole_samples(config.model.dead_time + config.latency, ts).0.saturating_add(1)
+        let delay = config.model.dead_time + config.latency;
+        super::discretise::whole_samples(delay, ts, super::discretise::nearness::<f32>()).0.saturating_add(1)
     }
 
     /// Order of the chains and number of excess sections.

@@ -114,7 +114,9 @@ impl CompensatorConfig {
         let dead_time_ok = check.range(Param::DeadTime, self.model.dead_time, 0.0, longest);
         let latency_ok = check.range(Param::Latency, self.latency, 0.0, longest);
         let total = self.model.dead_time + self.latency;
-        if dead_time_ok && latency_ok && super::discretise::whole_samples(total, ts).0 >= capacity {
+        // The number type with the coarser rounding decides.
+        let (whole, _) = super::discretise::whole_samples(total, ts, super::discretise::nearness::<f32>());
+        if dead_time_ok && latency_ok && whole >= capacity {
             check.fault(Param::DeadTime, Reason::TooLarge, total, 0.0, longest);
         }
         if check.is_clean() {

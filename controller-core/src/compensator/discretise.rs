@@ -4,6 +4,7 @@ use super::MAX_EXCESS;
 use super::config::CompensatorConfig;
 use super::zoh::{Pole, numerator, times_linear};
 use crate::plant_model::{MAX_ORDER, PlantModel};
+use crate::real::Real;
 use heapless::Vec;
 
 /// Everything a compensator needs, in `f64`.
@@ -27,12 +28,18 @@ pub(super) struct Discretised {
     pub(super) delay: usize,
 }
 
-/// A delay as whole samples and a fraction in `0..1`. A delay within 1e-9 of a sample counts as whole: decimal
-/// numbers such as 0.3/0.1 must not add a tap.
-pub(super) fn whole_samples(delay: f64, ts: f64) -> (usize, f64) {
+/// How near to a whole number of samples a delay counts as whole, for numbers given in `T`: the quotient of two rounded
+/// numbers such as 0.2 and 0.01 must not make a fraction.
+pub(super) fn nearness<T: Real>() -> f64 {
+    let quotient = 4.0 * T::EPS;
+    if quotient > 1e-9 { quotient } else { 1e-9 }
+}
+
+/// A delay as whole samples and a fraction in `0..1`; within `nearness` (relative) of a sample it counts as whole.
+pub(super) fn whole_samples(delay: f64, ts: f64, nearness: f64) -> (usize, f64) {
     let samples = delay / ts;
     let nearest = libm::round(samples);
-    let near = (samples - nearest).abs() <= 1e-9 * (1.0 + nearest);
+    let near = (samples - nearest).abs() <= nearness * (1.0 + nearest);
     let whole = if near { nearest } else { libm::floor(samples) };
     let fraction = if near { 0.0 } else { samples - whole };
     (f64_to_index(whole), fraction)
@@ -102,7 +109,7 @@ pub(super) fn shape(config: &CompensatorConfig, ts: f64) -> (usize, usize) {
 }
 
 /// Computes the coefficients; `config` must have passed its validation.
-pub(super) fn discretise(config: &CompensatorConfig, ts: f64) -> Discretised {
+pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discretised {
     let model = &config.model;
     let (n, excess) = shape(config, ts);
     let (mut real, pairs) = split_poles(model, ts);
@@ -138,7 +145,7 @@ pub(super) fn discretise(config: &CompensatorConfig, ts: f64) -> Discretised {
         let _ = poles.push(pole);
     }
 
-    let (delay, fraction) = whole_samples(model.dead_time + config.latency, ts);
+    let (delay, fraction) = whole_samples(model.dead_time + config.latency, ts, nearness::<T>());
     let taps = numerator(&poles, &model.zeros, ts, fraction);
     let alpha_gain = lag_gain(config.time_constant);
     Discretised {

@@ -122,7 +122,8 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
             check.fault(Param::FilterOrder, Reason::Mismatch, as_f64(excess), as_f64(E), as_f64(E));
         }
         check.into_result()?;
-        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } = discretise(config, ts);
+        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
+            discretise::<T>(config, ts);
         Ok(Self {
             g: array(&g),
             y_lead: array(&y_lead),

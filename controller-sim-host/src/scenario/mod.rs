@@ -1,0 +1,178 @@
+//! What a scenario says: a plant, events, one or more controllers.
+
+use controller_core::{ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
+use controller_design::model::TransferFunction;
+
+/// A whole scenario, checked: everything a run needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario {
+    /// Sampling period [s].
+    pub ts: f64,
+    /// Length of the run [s].
+    pub duration: f64,
+    /// Time from reading `y` to acting `u` [s].
+    pub latency: f64,
+    /// Steps per sample for the metrics and the trace between samples, 1 or more.
+    pub substeps: usize,
+    /// The plant.
+    pub plant: TransferFunction,
+    /// What held before `t = 0`.
+    pub initial: Initial,
+    /// What happens, in the order of `at`.
+    pub events: Vec<Event>,
+    /// Who controls; each runs alone on its own copy of the plant.
+    pub controllers: Vec<ControllerSpec>,
+    /// Noise on the measurement.
+    pub noise: Option<Noise>,
+    /// What lies between the controller's output and the plant.
+    pub actuator: Actuator,
+}
+
+/// The steady state before `t = 0`; the plant is at rest at it and the controllers are settled there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Initial {
+    /// Set-point and measurement [y].
+    pub setpoint: f64,
+    /// Disturbance at the plant input [u].
+    pub disturbance: f64,
+}
+
+/// White Gaussian noise on the measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Standard deviation [y].
+    pub std: f64,
+    /// Seed of the generator.
+    pub seed: u64,
+}
+
+/// An actuator with a range of its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Actuator {
+    /// Lowest output it accepts [u].
+    pub lo: f64,
+    /// Highest output it accepts [u].
+    pub hi: f64,
+    /// The controller is told what was accepted.
+    pub read_back: bool,
+}
+
+impl Default for Actuator {
+    fn default() -> Self {
+        Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, read_back: false }
+    }
+}
+
+/// Something that happens at a time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// When [s]. Disturbances begin exactly then, everything else with the next sample.
+    pub at: f64,
+    /// What happens, in the order it was written.
+    pub changes: Vec<Change>,
+    /// Index of the one controller it is about; `None`: all.
+    pub controller: Option<usize>,
+}
+
+/// What an event changes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// The local set-point becomes this [y].
+    Setpoint(f64),
+    /// The remote set-point becomes this [y].
+    RemoteSetpoint(f64),
+    /// The disturbance at the plant input.
+    Disturbance(Disturbance),
+    /// The requested mode becomes this.
+    Mode(Mode),
+    /// The manual output becomes this [u].
+    Manual(f64),
+    /// The track output becomes this [u].
+    Track(f64),
+    /// The offset becomes this [u].
+    Offset(f64),
+    /// The compensator is used or not.
+    Compensator(bool),
+    /// The next measurements are bad.
+    BadSamples(u32),
+    /// The next samples are lost: the task does not run.
+    LostSamples(u32),
+    /// A latched fallback is acknowledged.
+    Acknowledge,
+    /// The controllers concerned get these parameters, bumplessly: the list names the controller and what it is from
+    /// now on.
+    Parameters(Vec<(usize, ControllerSpec)>),
+}
+
+/// A disturbance at the plant input. Each adds to those before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Disturbance {
+    /// The steady level becomes this [u] (ramps and pulses add to it).
+    Step(f64),
+    /// A ramp of `slope` [u/s] for `duration` [s] (infinite: to the end); the level it reached stays.
+    Ramp {
+        /// Slope [u/s].
+        slope: f64,
+        /// Length [s].
+        duration: f64,
+    },
+    /// A pulse of `height` [u] for `duration` [s].
+    Pulse {
+        /// Height [u].
+        height: f64,
+        /// Length [s].
+        duration: f64,
+    },
+}
+
+/// A controller of a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControllerSpec {
+    /// Its name.
+    pub name: String,
+    /// PID, limits, set-point, anti-windup, fallback, alarms.
+    pub config: ControllerConfig,
+    /// Disturbance block.
+    pub compensator: CompensatorSpec,
+    /// Requested mode at the start.
+    pub mode: Mode,
+}
+
+/// The disturbance block of a controller.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum CompensatorSpec {
+    /// None.
+    #[default]
+    None,
+    /// Disturbance estimator (DE).
+    Estimator(EstimatorConfig),
+    /// Disturbance observer (DOB).
+    Observer(ObserverConfig),
+}
+
+impl ControllerSpec {
+    /// A plain PID with defaults for everything else, in mode Auto.
+    #[must_use]
+    pub fn pid(name: &str, pid: PidConfig) -> Self {
+        Self {
+            name: name.to_owned(),
+            config: ControllerConfig { pid, ..ControllerConfig::default() },
+            compensator: CompensatorSpec::None,
+            mode: Mode::Auto,
+        }
+    }
+
+    /// The same controller with a disturbance estimator.
+    #[must_use]
+    pub fn with_estimator(mut self, estimator: EstimatorConfig) -> Self {
+        self.compensator = CompensatorSpec::Estimator(estimator);
+        self
+    }
+
+    /// The same controller with a disturbance observer.
+    #[must_use]
+    pub fn with_observer(mut self, observer: ObserverConfig) -> Self {
+        self.compensator = CompensatorSpec::Observer(observer);
+        self
+    }
+}

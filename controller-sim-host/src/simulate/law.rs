@@ -1,0 +1,130 @@
+//! A controller of a scenario as the law that is flashed, in either number type.
+
+use crate::scenario::{CompensatorSpec, ControllerSpec};
+use controller_core::{
+    AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigErrors, Controller, ControllerInput,
+    ControllerOutput, ControllerState, NoCompensator, Real,
+};
+
+type Compensated<T> = AnyCompensator<T, Vec<T>>;
+
+/// Law and state of one controller, running in `T`. The steps are those of `controller-core`, nothing is repeated here.
+#[derive(Debug, Clone)]
+pub struct AnyLaw<T: Real> {
+    block: Block<T>,
+    ts: f64,
+    latency: f64,
+    capacity: usize,
+}
+
+#[derive(Debug, Clone)]
+enum Block<T: Real> {
+    Plain {
+        law: Controller<T, NoCompensator>,
+        state: ControllerState<T, ()>,
+    },
+    Compensated {
+        law: Box<Controller<T, Compensated<T>>>,
+        state: Box<ControllerState<T, AnyCompensatorState<T, Vec<T>>>>,
+    },
+}
+
+impl ControllerSpec {
+    /// The compensator's configuration, if there is one; `latency` \[s\].
+    #[must_use]
+    pub fn compensator_config(&self, latency: f64) -> Option<CompensatorConfig> {
+        match &self.compensator {
+            CompensatorSpec::None => None,
+            CompensatorSpec::Estimator(config) => Some(config.to_compensator(latency)),
+            CompensatorSpec::Observer(config) => Some(config.to_compensator(latency)),
+        }
+    }
+
+    /// Samples of delay memory that the compensator needs.
+    #[must_use]
+    pub fn needed_capacity(&self, ts: f64, latency: f64) -> usize {
+        self.compensator_config(latency)
+            // Two more than the exact need: the number type may round the delay up.
+            .map_or(1, |config| Compensated::<f64>::needed_capacity(&config, ts).saturating_add(2))
+    }
+}
+
+impl<T: Real> AnyLaw<T> {
+    /// Builds the law of `spec` with delay memory of `capacity` samples and a zeroed state. Every number is rounded to
+    /// `T` first, as a front end on the target would.
+    ///
+    /// # Errors
+    /// Every fault of the configuration.
+    pub fn new(spec: &ControllerSpec, ts: f64, latency: f64, capacity: usize) -> Result<Self, ConfigErrors> {
+        let ts = T::from_f64(ts).to_f64();
+        let config = spec.config.rounded::<T>();
+        let block = match spec.compensator_config(latency) {
+            None => {
+                let law = Controller::new(&config, ts)?;
+                Block::Plain { law, state: law.zeroed() }
+            }
+            Some(compensator) => {
+                let compensator = compensator.rounded::<T>();
+                // Both parts are built before either fails, so that all faults show at once.
+                let built = Compensated::new(&compensator, ts, capacity);
+                let plain = Controller::<T, _>::new(&config, ts).err();
+                let built = match (built, plain) {
+                    (Ok(built), None) => built,
+                    (Err(faults), None) | (Ok(_), Some(faults)) => return Err(faults),
+                    (Err(first), Some(second)) => return Err(second.and(&first)),
+                };
+                compensator.check_sign(&config.pid)?;
+                let state = ControllerState::over(built.state(vec![T::ZERO; capacity])?);
+                let law = Controller::with_compensator(&config, built, ts)?;
+                Block::Compensated { law: Box::new(law), state: Box::new(state) }
+            }
+        };
+        Ok(Self { block, ts, latency, capacity })
+    }
+
+    /// At rest at the set-point and measurement `y0` and the output `u0`.
+    pub fn settle(&mut self, r0: f64, y0: f64, u0: f64) {
+        let [r0, y0, u0] = [r0, y0, u0].map(T::from_f64);
+        match &mut self.block {
+            Block::Plain { law, state } => law.settle(state, r0, y0, u0),
+            Block::Compensated { law, state } => law.settle(state, r0, y0, u0),
+        }
+    }
+
+    /// One sample.
+    pub fn step(&mut self, input: &ControllerInput<T>) -> ControllerOutput<T> {
+        match &mut self.block {
+            Block::Plain { law, state } => law.step(state, input),
+            Block::Compensated { law, state } => law.step(state, input),
+        }
+    }
+
+    /// `n` samples were lost.
+    pub fn advance(&mut self, n: u32) {
+        match &mut self.block {
+            Block::Plain { law, state } => law.advance(state, n),
+            Block::Compensated { law, state } => law.advance(state, n),
+        }
+    }
+
+    /// Goes over to the parameters of `spec` without a bump.
+    ///
+    /// # Errors
+    /// Every fault of the configuration; the old law then stays. A controller cannot gain or lose its compensator.
+    pub fn adopt(&mut self, spec: &ControllerSpec) -> Result<(), ConfigErrors> {
+        let new = Self::new(spec, self.ts, self.latency, self.capacity)?;
+        match (&mut self.block, new.block) {
+            (Block::Plain { law, state }, Block::Plain { law: new, .. }) => {
+                new.adopt(law, state);
+                *law = new;
+            }
+            (Block::Compensated { law, state }, Block::Compensated { law: new, .. }) => {
+                new.adopt(law, state);
+                *law = new;
+            }
+            // The reader of scenarios refuses this; a caller of the library sees that nothing changed.
+            _ => {}
+        }
+        Ok(())
+    }
+}
