@@ -3,4 +3,5 @@
 
 pub mod cases;
 pub mod oracle;
+pub mod response;
 pub mod rig;
