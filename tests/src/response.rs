@@ -22,13 +22,15 @@ pub fn response<T: Real>(c: &Coefficients<'_, T>, phase: f64) -> (Complex, Compl
     from_u = mul(add(from_u, x), pow(back, c.delay + 1));
 
     let mut from_y = one;
-    for ((g, lead), dc) in c.g.chunks(2).zip(c.y_lead.chunks(2)).zip(c.y_dc.chunks(2)) {
+    let leads = c.y_feed.chunks(2).zip(c.y_lead.chunks(2));
+    for ((g, (feed, lead)), dc) in c.g.chunks(2).zip(leads).zip(c.y_dc.chunks(2)) {
         let w1 = lag(g[0]);
         let mut out = scale(lead[0].to_f64(), sub(one, w1));
         let mut w = w1;
         if g.len() == 2 {
-            w = mul(lag(g[1]), w1);
-            out = add(out, scale(lead[1].to_f64(), sub(w1, w)));
+            let x2 = add(w1, scale(feed[0].to_f64(), sub(one, w1)));
+            w = mul(lag(g[1]), x2);
+            out = add(out, scale(lead[1].to_f64(), sub(x2, w)));
         }
         out = add(out, scale(dc[dc.len() - 1].to_f64(), w));
         from_y = mul(from_y, out);

@@ -30,6 +30,7 @@ use heapless::Vec;
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnyCompensator<T, M> {
     g: Vec<T, MAX_ORDER>,
+    y_feed: Vec<T, MAX_ORDER>,
     y_lead: Vec<T, MAX_ORDER>,
     y_dc: Vec<T, MAX_ORDER>,
     u_lead: Vec<T, MAX_ORDER>,
@@ -57,11 +58,12 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     /// Every fault of [`CompensatorConfig::validate`].
     pub fn new(config: &CompensatorConfig, ts: f64, capacity: usize) -> Result<Self, ConfigErrors> {
         config.validate(ts, capacity)?;
-        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
+        let Discretised { g, y_feed, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
             discretise::<T>(config, ts);
         let rounded = |list: Vec<f64, MAX_ORDER>| list.iter().map(|&x| coefficient(x)).collect();
         Ok(Self {
             g: rounded(g),
+            y_feed: rounded(y_feed),
             y_lead: rounded(y_lead),
             y_dc: rounded(y_dc),
             u_lead: rounded(u_lead),
@@ -113,6 +115,7 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     pub fn coefficients(&self) -> Coefficients<'_, T> {
         Coefficients {
             g: &self.g,
+            y_feed: &self.y_feed,
             y_lead: &self.y_lead,
             y_dc: &self.y_dc,
             u_lead: &self.u_lead,

@@ -12,6 +12,8 @@ use heapless::Vec;
 pub(super) struct Discretised {
     /// Gains `1-p` of the lags: one for every state of the `y` chain, the same for the `u` chain.
     pub(super) g: Vec<f64, MAX_ORDER>,
+    /// Share of a first lag's difference that the second lag of its section is fed, at the index of the first.
+    pub(super) y_feed: Vec<f64, MAX_ORDER>,
     /// Weights of the `y` sections' differences.
     pub(super) y_lead: Vec<f64, MAX_ORDER>,
     /// Static gains of the `y` sections, 1 or 0 (integrating), at the index of a section's last state.
@@ -50,7 +52,7 @@ fn f64_to_index(x: f64) -> usize {
     x as usize
 }
 
-/// The poles of a model: real ones first, integrators before all others.
+/// The poles of a model: the real ones, fast before slow, and the complex pairs.
 pub(super) fn split_poles(model: &PlantModel, ts: f64) -> (Vec<Pole, MAX_ORDER>, Vec<Pole, MAX_ORDER>) {
     let mut real: Vec<Pole, MAX_ORDER> = Vec::new();
     let mut pairs: Vec<Pole, MAX_ORDER> = Vec::new();
@@ -70,8 +72,8 @@ pub(super) fn split_poles(model: &PlantModel, ts: f64) -> (Vec<Pole, MAX_ORDER>,
             }
         }
     }
-    // Slow before fast, so that slow poles meet slow lags; stable, so integrators stay in front.
-    real.sort_unstable_by(|a, b| rate(*a).partial_cmp(&rate(*b)).unwrap_or(core::cmp::Ordering::Equal));
+    // Fast before slow, as the lags, so that slow poles meet slow lags; integrators come last.
+    real.sort_unstable_by(|a, b| rate(*b).partial_cmp(&rate(*a)).unwrap_or(core::cmp::Ordering::Equal));
     (real, pairs)
 }
 
@@ -115,14 +117,16 @@ pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discre
     let (mut real, pairs) = split_poles(model, ts);
     let lag_gain = |tau: f64| -libm::expm1(-ts / tau);
 
-    // The lags of the chains: moved zeros and as many filter poles as fill the order, slow before fast.
+    // The lags of the chains: moved zeros and as many filter poles as fill the order, fast before slow: a fast lag
+    // behind a slow one would need weights of the size of their ratio to show through it.
     let mut taus = moved_zeros(model, ts);
     while taus.len() < n && taus.push(config.time_constant).is_ok() {}
-    taus.sort_unstable_by(|a, b| b.partial_cmp(a).unwrap_or(core::cmp::Ordering::Equal));
+    taus.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
     let g: Vec<f64, MAX_ORDER> = taus.iter().map(|&tau| lag_gain(tau)).collect();
 
     // Sections of the y path: real poles two by two, then the pairs, a single real pole last.
     let single = if n & 1 == 1 { real.pop() } else { None };
+    let mut y_feed: Vec<f64, MAX_ORDER> = Vec::new();
     let mut y_lead: Vec<f64, MAX_ORDER> = Vec::new();
     let mut y_dc: Vec<f64, MAX_ORDER> = Vec::new();
     let mut poles: Vec<Pole, MAX_ORDER> = Vec::new();
@@ -130,7 +134,8 @@ pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discre
     let complex = pairs.iter().map(|pair| (&[][..], Some(*pair)));
     for ((two, pair), gains) in two_by_two.chain(complex).zip(g.chunks_exact(2)) {
         if let [g1, g2] = *gains {
-            let (lead, dc) = section_of_two(two, pair, g1, g2, ts);
+            let (feed, lead, dc) = section_of_two(two, pair, g1, g2, ts);
+            let _ = y_feed.extend_from_slice(&[feed, 0.0]);
             let _ = y_lead.extend_from_slice(&lead);
             let _ = y_dc.extend_from_slice(&[0.0, dc]);
         }
@@ -138,9 +143,9 @@ pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discre
         let _ = poles.extend_from_slice(pair.as_slice());
     }
     if let (Some(pole), Some(&last)) = (single, g.last()) {
-        let (fall, _) = pole.one_minus_q();
         let integrating = pole == Pole::Integrator;
-        let _ = y_lead.push(if integrating { last / ts } else { last / fall });
+        let _ = y_feed.push(0.0);
+        let _ = y_lead.push(lead(pole, last, ts));
         let _ = y_dc.push(if integrating { 0.0 } else { 1.0 });
         let _ = poles.push(pole);
     }
@@ -151,6 +156,7 @@ pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discre
     Discretised {
         u_lead: chain_weights(&taps, &g),
         g,
+        y_feed,
         y_lead,
         y_dc,
         e_gain: core::iter::repeat_n(alpha_gain, excess).collect(),
@@ -160,28 +166,38 @@ pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discre
     }
 }
 
-/// Weights `(E1, E2)` and static gain of a second-order section `dc*w2 + E2*(w1-w2) + E1*(x-w1)` that realises
-/// `g1*g2*(1-q1 z^-1)(1-q2 z^-1)/(norm*(1-p1 z^-1)(1-p2 z^-1))`, `norm = (1-q1)(1-q2)`, or with `ts` in place of
-/// `1-q` for an integrator.
-fn section_of_two(two: &[Pole], pair: Option<Pole>, g1: f64, g2: f64, ts: f64) -> ([f64; 2], f64) {
-    let (mut norm, mut sum, mut dc) = (1.0, 0.0, 1.0);
-    for pole in two {
-        let (fall, _) = pole.one_minus_q();
-        if *pole == Pole::Integrator {
-            norm *= ts;
-            dc = 0.0;
-        } else {
-            norm *= fall;
-            sum += fall;
+/// Weight `D` of the first-order section `dc*w + D*(x-w)` with the numerator `1-q*z^-1` of `pole` over a lag of gain `g`:
+/// `g/(1-q)` for a static gain of 1, `g/ts` for an integrator.
+fn lead(pole: Pole, g: f64, ts: f64) -> f64 {
+    let (fall, _) = pole.one_minus_q();
+    if pole == Pole::Integrator { g / ts } else { g / fall }
+}
+
+/// Feed `F`, weights `(E1, E2)` and static gain of a second-order section
+/// `dc*w2 + E2*(x2-w2) + E1*(x-w1)`, `x2 = w1 + F*(x-w1)`, with the numerator of two poles over lags of gains `g1`, `g2`.
+///
+/// Two real poles are two first-order sections in a row (`F = D1`, `E2 = D2`, `E1 = 0`), so that nothing cancels at low
+/// frequencies. A complex pair and two integrators need both differences: `F = 0` and
+/// `g1*g2*(1-q1 z^-1)(1-q2 z^-1)/norm`, `norm = |1-q|^2` or `ts^2`, matched by `E1 = g1*g2/norm`,
+/// `E2 = E1*((1-q1) + (1-q2) - g2)/g1`.
+fn section_of_two(two: &[Pole], pair: Option<Pole>, g1: f64, g2: f64, ts: f64) -> (f64, [f64; 2], f64) {
+    let matched = |norm: f64, sum: f64, dc: f64| {
+        let e1 = g1 * g2 / norm;
+        (0.0, [e1, e1 * (sum - g2) / g1], dc)
+    };
+    match (two, pair) {
+        ([Pole::Integrator, Pole::Integrator], None) => matched(ts * ts, 0.0, 0.0),
+        ([first, second], None) => {
+            let dc = if *second == Pole::Integrator { 0.0 } else { 1.0 };
+            (lead(*first, g1, ts), [0.0, lead(*second, g2, ts)], dc)
         }
+        (_, Some(pair)) => {
+            let (re, im) = pair.one_minus_q();
+            matched(re * re + im * im, 2.0 * re, 1.0)
+        }
+        // The sections are made of chunks of exactly two poles or of one pair.
+        (_, None) => (0.0, [0.0, 0.0], 0.0),
     }
-    if let Some(pair) = pair {
-        let (re, im) = pair.one_minus_q();
-        norm = re * re + im * im;
-        sum = 2.0 * re;
-    }
-    let e1 = g1 * g2 / norm;
-    ([e1, e1 * (sum - g2) / g1], dc)
 }
 
 /// Weights `E_j` such that `w_n + sum E_j*(w_(j-1) - w_j)` has the numerator `prod(g)*B/B(1)`, `taps = b_k`.

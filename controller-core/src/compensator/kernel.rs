@@ -19,6 +19,8 @@ pub struct CompensatorOutput<T> {
 pub struct Coefficients<'a, T> {
     /// Gains `g = 1-p` of the lags, for the `y` and for the `u` chain.
     pub g: &'a [T],
+    /// Share of a first lag's difference that the second lag of its section is fed, at the index of the first.
+    pub y_feed: &'a [T],
     /// Weights of the differences in the `y` sections: `E_1, E_2` for every two lags, one for a single last lag.
     pub y_lead: &'a [T],
     /// Static gains of the `y` sections (1, or 0 when integrating) at the index of each section's last lag.
@@ -74,13 +76,15 @@ impl<T: Real> Coefficients<'_, T> {
     #[inline(always)]
     fn y_path(&self, lags: &mut [Lag<T>], y: T) -> T {
         let mut x = y;
-        let coefficients =
-            self.g.chunks_exact(2).zip(self.y_lead.chunks_exact(2)).zip(self.y_dc.chunks_exact(2));
+        let leads = self.y_feed.chunks_exact(2).zip(self.y_lead.chunks_exact(2));
+        let coefficients = self.g.chunks_exact(2).zip(leads).zip(self.y_dc.chunks_exact(2));
         let mut sections = lags.chunks_exact_mut(2);
-        for (section, ((g, lead), dc)) in sections.by_ref().zip(coefficients) {
-            if let ([first, second], &[g1, g2], &[e1, e2], &[_, dc]) = (section, g, lead, dc) {
+        for (section, ((g, (feed, lead)), dc)) in sections.by_ref().zip(coefficients) {
+            if let ([first, second], &[g1, g2], &[feed, _], &[e1, e2], &[_, dc]) =
+                (section, g, feed, lead, dc)
+            {
                 let one = first.advance(g1, x);
-                let two = second.advance(g2, one.value);
+                let two = second.advance(g2, one.value + feed * one.difference);
                 x = (dc * two.value + e2 * two.difference) + e1 * one.difference;
             }
         }
@@ -113,7 +117,11 @@ impl<T: Real> Coefficients<'_, T> {
             .y_lead
             .chunks(2)
             .zip(self.y_dc.chunks(2))
-            .map(|(lead, dc)| 2.0 * lead.iter().map(size).sum::<f64>() + dc.iter().map(size).sum::<f64>())
+            .zip(self.y_feed.chunks(2))
+            .map(|((lead, dc), feed)| {
+                let fed = 1.0 + 2.0 * feed.iter().map(size).sum::<f64>();
+                fed * (2.0 * lead.iter().map(size).sum::<f64>() + dc.iter().map(size).sum::<f64>())
+            })
             .product();
         let from_u = 1.0 + 2.0 * self.u_lead.iter().map(size).sum::<f64>();
         (from_y * size(&self.inv_gain), from_u)

@@ -25,14 +25,14 @@ pub type Observer<T, const N: usize, const R: usize> = Compensator<T, N, 0, R>;
 ///
 /// ```text
 /// x_u = w_N + sum_j E_j*(w_(j-1) - w_j),  w_0 = u_applied[k-1-delay]         chain of N lags
-/// x_y = dc*w_2 + E_2*(w_1-w_2) + E_1*(x-w_1)                                 section by section, from y[k]
+/// x_y = dc*w_2 + E_2*(x_2-w_2) + E_1*(x-w_1),  x_2 = w_1 + F*(x-w_1)          section by section, from y[k]
 /// x   = (w + (g/2)*(x - w))                                                  E times, from x_u - x_y/K
 /// d_hat = x_0 - x;  u_f = -gain*d_hat                                        x_0: x at the point of initialisation
 /// ```
 ///
 /// `d + (zeros moved into C_y) = N + E`, `d` the filter order: for an estimator `E = 3 - N`.
 /// Units: `y` \[y\], `u` \[u\]. Inputs must be finite (the [`Controller`](crate::Controller) checks them).
-/// Cost per sample: `6*(2N+E)` operations for the lags, `5N + 2E + 4` for the outputs, one write and one read of the
+/// Cost per sample: `6*(2N+E)` operations for the lags, `6N + 2E + 4` for the outputs, one write and one read of the
 /// delay line; no division, and the same on every call. State: `4N + 2E + 2 + R` numbers.
 /// Source: Tena et al. 2022, eqs (26), (27); Vrančić & Huba 2021, eqs (13)-(15).
 ///
@@ -49,6 +49,7 @@ pub type Observer<T, const N: usize, const R: usize> = Compensator<T, N, 0, R>;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensator<T, const N: usize, const E: usize, const R: usize> {
     g: [T; N],
+    y_feed: [T; N],
     y_lead: [T; N],
     y_dc: [T; N],
     u_lead: [T; N],
@@ -122,10 +123,11 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
             check.fault(Param::FilterOrder, Reason::Mismatch, as_f64(excess), as_f64(E), as_f64(E));
         }
         check.into_result()?;
-        let Discretised { g, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
+        let Discretised { g, y_feed, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
             discretise::<T>(config, ts);
         Ok(Self {
             g: array(&g),
+            y_feed: array(&y_feed),
             y_lead: array(&y_lead),
             y_dc: array(&y_dc),
             u_lead: array(&u_lead),
@@ -176,6 +178,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
     pub fn coefficients(&self) -> Coefficients<'_, T> {
         Coefficients {
             g: &self.g,
+            y_feed: &self.y_feed,
             y_lead: &self.y_lead,
             y_dc: &self.y_dc,
             u_lead: &self.u_lead,
