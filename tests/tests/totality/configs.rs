@@ -12,22 +12,22 @@ use controller_core::{
 };
 
 /// Delay memory of every compensator \[samples\].
-pub const CAPACITY: usize = 24;
+pub(crate) const CAPACITY: usize = 24;
 
 /// Bytes that one configuration reads at most; more would read as zero.
-pub const CONFIG_BYTES: usize = 224;
+pub(crate) const CONFIG_BYTES: usize = 224;
 
 /// A loop as it is written, not yet built.
 #[derive(Debug, Clone)]
-pub struct Case {
-    pub ts: f64,
-    pub config: ControllerConfig,
-    pub block: CompensatorConfig,
+pub(crate) struct Case {
+    pub(crate) ts: f64,
+    pub(crate) config: ControllerConfig,
+    pub(crate) block: CompensatorConfig,
 }
 
 impl Case {
     /// Any configuration. `same_ts` \[s\] replaces the sampling period, so that most swaps keep it.
-    pub fn draw(bytes: &[u8], same_ts: Option<f64>) -> Self {
+    pub(crate) fn draw(bytes: &[u8], same_ts: Option<f64>) -> Self {
         let mut draw = Draw::new(bytes);
         let own = if draw.flag() { draw.decades(-9.0, 9.0) } else { draw.decades(-4.0, 1.0) };
         let ts = same_ts.filter(|_| !draw.rarely(8)).unwrap_or(own);

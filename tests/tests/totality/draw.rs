@@ -4,16 +4,16 @@
 use controller_core::Real;
 
 /// A reader of choices.
-pub struct Draw<'a> {
+pub(crate) struct Draw<'a> {
     bytes: &'a [u8],
 }
 
 impl<'a> Draw<'a> {
-    pub fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes }
     }
 
-    pub fn byte(&mut self) -> u8 {
+    pub(crate) fn byte(&mut self) -> u8 {
         match self.bytes.split_first() {
             Some((first, rest)) => {
                 self.bytes = rest;
@@ -23,44 +23,44 @@ impl<'a> Draw<'a> {
         }
     }
 
-    pub fn short(&mut self) -> u16 {
+    pub(crate) fn short(&mut self) -> u16 {
         u16::from_le_bytes([self.byte(), self.byte()])
     }
 
-    pub fn word(&mut self) -> u32 {
+    pub(crate) fn word(&mut self) -> u32 {
         u32::from(self.short()) | u32::from(self.short()) << 16
     }
 
     /// One of `0..n`.
-    pub fn index(&mut self, n: usize) -> usize {
+    pub(crate) fn index(&mut self, n: usize) -> usize {
         usize::from(self.byte()) % n
     }
 
-    pub fn pick<V: Copy>(&mut self, list: &[V]) -> V {
+    pub(crate) fn pick<V: Copy>(&mut self, list: &[V]) -> V {
         list[self.index(list.len())]
     }
 
-    pub fn flag(&mut self) -> bool {
+    pub(crate) fn flag(&mut self) -> bool {
         self.byte() & 1 == 1
     }
 
     /// True once in `n` times.
-    pub fn rarely(&mut self, n: u8) -> bool {
+    pub(crate) fn rarely(&mut self, n: u8) -> bool {
         self.byte() % n == n - 1
     }
 
     /// A number in `0..=1`.
-    pub fn share(&mut self) -> f64 {
+    pub(crate) fn share(&mut self) -> f64 {
         f64::from(self.short()) / f64::from(u16::MAX)
     }
 
-    pub fn between(&mut self, lo: f64, hi: f64) -> f64 {
+    pub(crate) fn between(&mut self, lo: f64, hi: f64) -> f64 {
         let share = self.share();
         (lo * (1.0 - share) + hi * share).clamp(lo, hi)
     }
 
     /// A power of ten with an exponent in `lo..=hi`; 1 for zeros when that is inside.
-    pub fn decades(&mut self, lo: f64, hi: f64) -> f64 {
+    pub(crate) fn decades(&mut self, lo: f64, hi: f64) -> f64 {
         let share = self.share();
         if share == 0.0 && lo <= 0.0 && hi >= 0.0 {
             return 1.0;
@@ -69,20 +69,20 @@ impl<'a> Draw<'a> {
     }
 
     /// As [`decades`](Self::decades), with either sign.
-    pub fn signed_decades(&mut self, lo: f64, hi: f64) -> f64 {
+    pub(crate) fn signed_decades(&mut self, lo: f64, hi: f64) -> f64 {
         let size = self.decades(lo, hi);
         if self.flag() { -size } else { size }
     }
 
     /// Any bit pattern of `T`.
-    pub fn pattern<T: Real>(&mut self) -> T {
+    pub(crate) fn pattern<T: Real>(&mut self) -> T {
         let words = [self.word(), self.word()];
         T::from_words(words)
     }
 
     /// A number of `T` for a signal with the range `lo..=hi`: inside, on its edges, just or far outside, or one of
     /// the bit patterns that arithmetic is worst at.
-    pub fn signal<T: Real>(&mut self, lo: T, hi: T) -> T {
+    pub(crate) fn signal<T: Real>(&mut self, lo: T, hi: T) -> T {
         let two = T::ONE + T::ONE;
         match self.index(8) {
             0 => T::ZERO.clamp_to(lo, hi),

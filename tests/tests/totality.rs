@@ -1,0 +1,91 @@
+//! Totality: whatever the inputs are, a step neither panics nor leaves its range.
+//!
+//! Random configurations over the documented ranges, random bit patterns of every input, swaps, lost samples,
+//! settling and damaged snapshots in between. After each of them every output is finite, the output is in its
+//! range and no faster than its rate (the range beats the rate), and the state is finite. The first good sample
+//! closes the loop again; with a plant behind it, the loop reaches its set-point.
+//!
+//! The same cases on every run; with `SOAK=1` in the environment a hundred times as many, different on every run.
+
+#[path = "totality/configs.rs"]
+mod configs;
+#[path = "totality/draw.rs"]
+mod draw;
+#[path = "totality/driven.rs"]
+mod driven;
+
+use configs::{CONFIG_BYTES, Case};
+use controller_core::{NoCompensator, Real};
+use driven::{AnyBlock, Block, OPERATION_BYTES, drive};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
+
+/// A runner for a bounded number of cases, or for many when soaking.
+fn runner(cases: u32) -> TestRunner {
+    let soak = std::env::var_os("SOAK").is_some();
+    let config = ProptestConfig {
+        cases: if soak { 100 * cases } else { cases },
+        failure_persistence: None,
+        max_shrink_iters: 20_000,
+        ..ProptestConfig::default()
+    };
+    if soak {
+        TestRunner::new(config)
+    } else {
+        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
+    }
+}
+
+fn config_bytes() -> impl Strategy<Value = Vec<u8>> {
+    vec(any::<u8>(), CONFIG_BYTES)
+}
+
+fn operations() -> impl Strategy<Value = Vec<Vec<u8>>> {
+    vec(vec(any::<u8>(), OPERATION_BYTES), 0..60)
+}
+
+/// The configurations of one run: three, mostly with one sampling period.
+fn cases(bytes: &[Vec<u8>]) -> Vec<Case> {
+    let mut cases: Vec<Case> = Vec::new();
+    for bytes in bytes {
+        let ts = cases.first().map(|case| case.ts);
+        cases.push(Case::draw(bytes, ts));
+    }
+    cases
+}
+
+fn total<T: Real, C: Block<T>>(number: u32) {
+    let strategy = (vec(config_bytes(), 1..=3), operations());
+    let result = runner(number).run(&strategy, |(bytes, operations)| {
+        drive::<T, C>(&cases(&bytes), &operations).map_err(TestCaseError::fail)
+    });
+    match result {
+        Ok(()) => {}
+        Err(TestError::Abort(reason)) => panic!("{reason}"),
+        // The values are bytes; what they mean stands in the message.
+        Err(TestError::Fail(reason, (bytes, operations))) => {
+            panic!("{reason}\nwith {} configurations, {} operations", bytes.len(), operations.len())
+        }
+    }
+}
+
+#[test]
+fn single_precision_loops_without_a_compensator() {
+    total::<f32, NoCompensator>(3000);
+}
+
+#[test]
+fn double_precision_loops_without_a_compensator() {
+    total::<f64, NoCompensator>(3000);
+}
+
+#[test]
+fn single_precision_loops_with_any_compensator() {
+    total::<f32, AnyBlock<f32>>(3000);
+}
+
+#[test]
+fn double_precision_loops_with_any_compensator() {
+    total::<f64, AnyBlock<f64>>(3000);
+}
