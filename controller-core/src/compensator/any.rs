@@ -153,7 +153,7 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
 
     fn resettle(&self, state: &mut Self::State, y0: T) {
         let u = state.line.tap(self.delay);
-        state.reference = self.coefficients().settle(&mut state.lags(), y0, u);
+        state.reference = self.coefficients().settle_y(&mut state.lags(), y0, u);
     }
 
     fn skip(&self, state: &mut Self::State, u: T, n: usize) {

@@ -100,14 +100,32 @@ impl<T: Real> Coefficients<'_, T> {
     /// Puts all lags at rest for the measurement `y0` and the delayed input `u0`; returns the estimate there.
     pub(super) fn settle(&self, lags: &mut LagsView<'_, T>, y0: T, u0: T) -> T {
         lags.u.fill(Lag::settled(u0));
+        self.settle_y(lags, y0, u0)
+    }
+
+    /// Puts the lags of the `y` path and the shared ones at rest for the measurement `y0`; the `u` chain, which has
+    /// followed the applied output all along, goes on. Returns the estimate there; `u` is the delayed input.
+    pub(super) fn settle_y(&self, lags: &mut LagsView<'_, T>, y0: T, u: T) -> T {
         let mut x = y0;
         for (section, dc) in lags.y.chunks_mut(2).zip(self.y_dc.chunks(2)) {
             section.fill(Lag::settled(x));
             x = x * dc.last().copied().unwrap_or_default();
         }
-        let estimate = u0 - self.inv_gain * x;
+        let estimate = self.preview_u(lags.u, u) - self.inv_gain * x;
         lags.e.fill(Lag::settled(estimate));
         estimate
+    }
+
+    /// The output of the `u` chain for the input `u`, without moving it.
+    fn preview_u(&self, lags: &[Lag<T>], u: T) -> T {
+        let mut x = u;
+        let mut sum = T::ZERO;
+        for (lag, &lead) in lags.iter().zip(self.u_lead) {
+            let tap = lag.tap(x);
+            sum = sum + lead * tap.difference;
+            x = tap.value;
+        }
+        sum + x
     }
 
     /// Bounds of the estimate per unit of `y` and of `u`, for overflow checks.
@@ -146,7 +164,8 @@ pub trait Compensate<T: Real>: Sealed {
     /// Everything at rest at `(y0, u0)`, the whole delay line at `u0`: nothing moves, `d_hat = 0`.
     fn settle(&self, state: &mut Self::State, y0: T, u0: T);
 
-    /// The lags at rest at `y0` and at what the delay line holds now; the line keeps its history. `d_hat = 0`.
+    /// The part that follows `y` at rest at `y0`, while the delay line and the lags of the applied output, which have gone
+    /// on, keep their history. `d_hat = 0`.
     fn resettle(&self, state: &mut Self::State, y0: T);
 
     /// `n` samples were lost while `u` was applied: moves the delay line only.

@@ -218,7 +218,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
 
     fn resettle(&self, state: &mut Self::State, y0: T) {
         let u = state.line.tap(self.delay);
-        state.reference = self.coefficients().settle(&mut state.lags(), y0, u);
+        state.reference = self.coefficients().settle_y(&mut state.lags(), y0, u);
     }
 
     fn skip(&self, state: &mut Self::State, u: T, n: usize) {
