@@ -16,9 +16,10 @@ mod driven;
 
 use configs::{CONFIG_BYTES, Case};
 use controller_core::{NoCompensator, Real};
-use driven::{AnyBlock, Block, OPERATION_BYTES, drive};
+use driven::{AnyBlock, Block, Built, OPERATION_BYTES, drive};
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
 
 /// A runner for a bounded number of cases, or for many when soaking.
@@ -88,4 +89,31 @@ fn single_precision_loops_with_any_compensator() {
 #[test]
 fn double_precision_loops_with_any_compensator() {
     total::<f64, AnyBlock<f64>>(3000);
+}
+
+/// A test of what is refused would show nothing: most configurations are loops that can be built.
+fn share_accepted<T: Real, C: Block<T>>() -> f64 {
+    let mut runner = runner(1);
+    let number = 4000;
+    let accepted = (0..number)
+        .filter(|_| {
+            let bytes = config_bytes().new_tree(&mut runner).expect("no filter").current();
+            Built::<T, C>::new(&Case::draw(&bytes, None)).is_ok()
+        })
+        .count();
+    accepted as f64 / f64::from(number)
+}
+
+#[test]
+fn most_of_the_configurations_are_loops() {
+    let shares = [
+        ("f32", share_accepted::<f32, NoCompensator>()),
+        ("f64", share_accepted::<f64, NoCompensator>()),
+        ("f32 with a compensator", share_accepted::<f32, AnyBlock<f32>>()),
+        ("f64 with a compensator", share_accepted::<f64, AnyBlock<f64>>()),
+    ];
+    for (name, share) in shares {
+        println!("{name}: {:.1} % accepted", 100.0 * share);
+        assert!(share >= 0.5, "{name}: only {:.1} %", 100.0 * share);
+    }
 }

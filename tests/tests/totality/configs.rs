@@ -54,9 +54,10 @@ impl Case {
 
 /// 0, a moderate or an extreme size, either sign.
 fn gain(draw: &mut Draw<'_>) -> f64 {
-    match draw.index(4) {
-        0 | 1 => draw.signed_decades(-3.0, 3.0),
-        2 => draw.signed_decades(-15.0, 15.0),
+    match draw.index(8) {
+        0..4 => draw.signed_decades(-3.0, 3.0),
+        4 | 5 => draw.signed_decades(-15.0, 15.0),
+        6 => draw.pick(&[1e15, -1e15]),
         _ => 0.0,
     }
 }
@@ -93,10 +94,11 @@ fn rate(draw: &mut Draw<'_>) -> Option<f64> {
 }
 
 fn pid(draw: &mut Draw<'_>, ts: f64) -> PidConfig {
-    let tf = match draw.index(4) {
-        0 | 1 => 0.0,
-        2 => ts * draw.decades(-0.301, 2.0),
-        _ => (ts * draw.decades(-0.301, 12.0)).min(1e12),
+    let tf = match draw.index(8) {
+        0..3 => 0.0,
+        3 | 4 => ts * draw.decades(-0.301, 2.0),
+        5 | 6 => (ts * draw.decades(-0.301, 12.0)).min(1e12),
+        _ => draw.pick(&[0.5 * ts, 1e12]),
     };
     PidConfig {
         kp: gain(draw),

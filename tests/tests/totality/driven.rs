@@ -116,7 +116,10 @@ impl<T: Real, C: Block<T>> Built<T, C> {
 }
 
 /// The words of a state.
-pub(crate) fn saved<T: Real, C: Block<T>>(law: &Controller<T, C>, state: &ControllerState<T, C::State>) -> Vec<u32> {
+pub(crate) fn saved<T: Real, C: Block<T>>(
+    law: &Controller<T, C>,
+    state: &ControllerState<T, C::State>,
+) -> Vec<u32> {
     let mut words = vec![0; Controller::<T, C>::snapshot_words(state)];
     let used = law.save(state, &mut words).expect("room for all words");
     assert_eq!(used, words.len());
@@ -297,7 +300,7 @@ impl<'a, T: Real, C: Block<T>> Driven<'a, T, C> {
         let words = saved(law, &self.state);
         let mut copy = ControllerState::over(law.compensator().blank());
         let result = law.restore(&mut copy, &words);
-        ensure!(result.is_ok(), "the state is not finite\n{case:?}\n{words:x?}");
+        ensure!(result.is_ok(), "the state cannot be restored: {result:?}\n{case:?}\n{words:x?}");
         ensure!(saved(law, &copy) == words, "restored to something else\n{case:?}");
         Ok(())
     }
