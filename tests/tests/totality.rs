@@ -13,14 +13,17 @@ mod configs;
 mod draw;
 #[path = "totality/driven.rs"]
 mod driven;
+#[path = "totality/recovery.rs"]
+mod recovery;
 
 use configs::{CONFIG_BYTES, Case};
 use controller_core::{NoCompensator, Real};
-use driven::{AnyBlock, Block, Built, OPERATION_BYTES, drive};
+use driven::{AnyBlock, Block, Built, Checked, OPERATION_BYTES, drive};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
+use recovery::{LOOP_BYTES, recovers};
 
 /// A runner for a bounded number of cases, or for many when soaking.
 fn runner(cases: u32) -> TestRunner {
@@ -56,19 +59,31 @@ fn cases(bytes: &[Vec<u8>]) -> Vec<Case> {
     cases
 }
 
-fn total<T: Real, C: Block<T>>(number: u32) {
-    let strategy = (vec(config_bytes(), 1..=3), operations());
-    let result = runner(number).run(&strategy, |(bytes, operations)| {
-        drive::<T, C>(&cases(&bytes), &operations).map_err(TestCaseError::fail)
-    });
-    match result {
+/// Runs a check on `number` random values.
+fn for_all<S: Strategy>(number: u32, strategy: &S, check: impl Fn(S::Value) -> Checked) {
+    match runner(number).run(strategy, |value| check(value).map_err(TestCaseError::fail)) {
         Ok(()) => {}
-        Err(TestError::Abort(reason)) => panic!("{reason}"),
-        // The values are bytes; what they mean stands in the message.
-        Err(TestError::Fail(reason, (bytes, operations))) => {
-            panic!("{reason}\nwith {} configurations, {} operations", bytes.len(), operations.len())
-        }
+        // The value is bytes; what they mean stands in the reason.
+        Err(TestError::Abort(reason) | TestError::Fail(reason, _)) => panic!("{reason}"),
     }
+}
+
+fn total<T: Real, C: Block<T>>(number: u32) {
+    for_all(number, &(vec(config_bytes(), 1..=3), operations()), |(bytes, operations)| {
+        drive::<T, C>(&cases(&bytes), &operations)
+    });
+}
+
+#[test]
+fn ordinary_loops_come_back_in_single_precision() {
+    let strategy = (vec(any::<u8>(), LOOP_BYTES), operations());
+    for_all(300, &strategy, |(bytes, operations)| recovers::<f32>(&bytes, &operations));
+}
+
+#[test]
+fn ordinary_loops_come_back_in_double_precision() {
+    let strategy = (vec(any::<u8>(), LOOP_BYTES), operations());
+    for_all(300, &strategy, |(bytes, operations)| recovers::<f64>(&bytes, &operations));
 }
 
 #[test]

@@ -182,10 +182,10 @@ impl<'a, T: Real, C: Block<T>> Driven<'a, T, C> {
             false => T::from_f64(case.config.initial_output).clamp_to(lo, hi),
         };
         let read_back = input.u_applied.filter(|a| a.is_finite_number()).map(|a| a.clamp_to(lo, hi));
-        // A loop that settles begins where the actuator is; otherwise its own last output counts.
-        let base = match read_back {
-            Some(a) if settles || !self.state.is_started() => a,
-            _ => own,
+        // A loop that settles begins where the actuator is, in the range; otherwise its own last output counts.
+        let base = match settles || !self.state.is_started() {
+            true => read_back.unwrap_or(own).clamp_to(lo, hi),
+            false => own,
         };
         let out = law.step(&mut self.state, input);
         let context = || format!("{case:?}\nfrom {base:?} by {input:?}\nto {out:?}");
