@@ -41,7 +41,7 @@ impl AlarmConfig {
 /// The alarms of a loop. Their state is the set of active alarms ([`Status`] bits 16 to 20).
 ///
 /// Law: a high alarm comes when `y > level` and goes when `y <= level - hysteresis`; low alarms likewise; the
-/// deviation alarm watches `|r - y|`. Cost: 5 compares and selects.
+/// deviation alarm watches `|r - y|`. Cost: 5 compares and selects, or one branch when no alarm is configured.
 ///
 /// ```
 /// use controller_core::{AlarmConfig, Alarms, Status};
@@ -59,6 +59,7 @@ pub struct Alarms<T> {
     lo_lo: T,
     deviation: T,
     hysteresis: T,
+    any: bool,
 }
 
 impl<T: Real> Alarms<T> {
@@ -87,7 +88,7 @@ impl<T: Real> Alarms<T> {
         }
         check.optional(Param::AlarmDeviation, config.deviation, f64::MIN_POSITIVE, RANGE_LIMIT);
         check.range(Param::AlarmHysteresis, config.hysteresis, 0.0, RANGE_LIMIT);
-        // Beyond every range: an alarm that never comes costs the same as one that can.
+        // Beyond every range: an alarm that never comes.
         let never = 8.0 * RANGE_LIMIT;
         check.finish(Self {
             hi_hi: coefficient(config.hi_hi.unwrap_or(never)),
@@ -96,6 +97,7 @@ impl<T: Real> Alarms<T> {
             lo_lo: coefficient(config.lo_lo.unwrap_or(-never)),
             deviation: coefficient(config.deviation.unwrap_or(never)),
             hysteresis: coefficient(config.hysteresis),
+            any: levels.iter().any(|(_, level)| level.is_some()) || config.deviation.is_some(),
         })
     }
 
@@ -103,6 +105,9 @@ impl<T: Real> Alarms<T> {
     #[must_use]
     #[inline]
     pub fn check(&self, active: Status, r: T, y: T) -> Status {
+        if !self.any {
+            return Status::NONE;
+        }
         let over = |bit: Status, x: T, level: T| {
             let release = if active.has(bit) { level - self.hysteresis } else { level };
             bit.when(x > release)

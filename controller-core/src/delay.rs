@@ -58,13 +58,11 @@ impl<M> DelayLine<M> {
         M: Memory<T>,
     {
         let cells = self.memory.as_ref();
-        let index = if n <= self.newest {
-            self.newest - n
-        } else if n < cells.len() {
-            self.newest + cells.len() - n
-        } else {
-            (self.newest + 1) * usize::from(self.newest + 1 < cells.len())
-        };
+        // Selects, no branches: the same cost on every call.
+        let oldest = cells.len().wrapping_sub(1);
+        let n = if n < oldest { n } else { oldest };
+        let from = if n <= self.newest { self.newest } else { self.newest + cells.len() };
+        let index = from.wrapping_sub(n);
         cells.get(index).copied().unwrap_or_default()
     }
 

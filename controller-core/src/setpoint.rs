@@ -98,7 +98,14 @@ impl<T: Real> Setpoint<T> {
     #[must_use]
     #[inline(always)]
     pub fn advance(&self, working: T, r: T) -> T {
-        self.into_range(r).clamp_to(working - self.down, working + self.up)
+        self.ramp(working, self.into_range(r))
+    }
+
+    /// As [`advance`](Self::advance) for a set-point that is in the range already.
+    #[must_use]
+    #[inline(always)]
+    pub fn ramp(&self, working: T, r: T) -> T {
+        r.clamp_to(working - self.down, working + self.up)
     }
 
     /// `r` moved into the range \[y\].

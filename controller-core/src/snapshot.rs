@@ -58,6 +58,12 @@ fn crc32(words: &[u32]) -> u32 {
     !crc
 }
 
+/// Chain and shared lags are at most 8 and 3; a line longer than 2^24 cells shows in the number of words.
+fn shape_mark(chain: usize, shared: usize, cells: usize) -> u32 {
+    let low = |n: usize, bits: u32| u32::try_from(n & ((1 << bits) - 1)).unwrap_or(0);
+    low(chain, 4) << 28 | low(shared, 4) << 24 | low(cells, 24)
+}
+
 fn shape_word<T: Real>(words: usize) -> Option<u32> {
     let count = u32::try_from(words).ok().filter(|&n| n < 1 << 28)?;
     Some(count | u32::try_from(T::WORDS).ok()? << 28)
@@ -134,6 +140,11 @@ impl Writer<'_> {
         list.iter().for_each(|&x| self.number(x));
     }
 
+    /// Marks the shape of what follows: lags of the chains, shared lags, cells of the line.
+    pub(crate) fn shape(&mut self, chain: usize, shared: usize, cells: usize) {
+        self.word(shape_mark(chain, shared, cells));
+    }
+
     pub(crate) fn lags<T: Real>(&mut self, lags: &[Lag<T>]) {
         lags.iter().for_each(|lag| self.numbers(&lag.parts()));
     }
@@ -171,6 +182,11 @@ impl Reader<'_> {
             *x = self.number()?;
         }
         Some(list)
+    }
+
+    /// Checks the mark that [`Writer::shape`] left.
+    pub(crate) fn shape(&mut self, chain: usize, shared: usize, cells: usize) -> Option<()> {
+        (self.word()? == shape_mark(chain, shared, cells)).then_some(())
     }
 
     pub(crate) fn lags<T: Real>(&mut self, lags: &mut [Lag<T>]) -> Option<()> {

@@ -193,10 +193,11 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
 
     fn words(state: &Self::State) -> usize {
         let lags = state.y.len() + state.u.len() + state.e.len();
-        (2 * lags + 1 + state.line.capacity()) * T::WORDS + 1
+        (2 * lags + 1 + state.line.capacity()) * T::WORDS + 2
     }
 
     fn save(state: &Self::State, writer: &mut Writer<'_>) {
+        writer.shape(state.y.len(), state.e.len(), state.line.capacity());
         writer.lags(&state.y);
         writer.lags(&state.u);
         writer.lags(&state.e);
@@ -205,6 +206,7 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
     }
 
     fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+        reader.shape(state.y.len(), state.e.len(), state.line.capacity())?;
         reader.lags(&mut state.y)?;
         reader.lags(&mut state.u)?;
         reader.lags(&mut state.e)?;

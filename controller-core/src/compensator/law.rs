@@ -246,10 +246,11 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
     }
 
     fn words(_: &Self::State) -> usize {
-        (4 * N + 2 * E + 1 + R) * T::WORDS + 1
+        (4 * N + 2 * E + 1 + R) * T::WORDS + 2
     }
 
     fn save(state: &Self::State, writer: &mut Writer<'_>) {
+        writer.shape(N, E, R);
         writer.lags(&state.y);
         writer.lags(&state.u);
         writer.lags(&state.e);
@@ -258,6 +259,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
     }
 
     fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+        reader.shape(N, E, R)?;
         reader.lags(&mut state.y)?;
         reader.lags(&mut state.u)?;
         reader.lags(&mut state.e)?;

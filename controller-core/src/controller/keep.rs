@@ -50,6 +50,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         if !state.started {
             return;
         }
+        state.r_asked = self.setpoint.into_range(state.r_asked);
         // What the old anti-windup rule still owes for the last sample.
         let owed = old.anti_windup.correction(state.pid.increment(), state.v, state.u);
         state.v = state.u;

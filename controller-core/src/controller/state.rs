@@ -30,7 +30,7 @@ pub struct ControllerState<T, S> {
     pub(super) y: T,
     /// Working set-point.
     pub(super) r: T,
-    /// Last usable set-point as asked for.
+    /// Last usable set-point as asked for, moved into its range.
     pub(super) r_asked: T,
     /// Last usable offset.
     pub(super) offset: T,

@@ -33,7 +33,6 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let verdict = self.guard.judge(&mut state.guard, input.y, input.quality, input.acknowledge);
         let usable = matches!(verdict, Verdict::Use | Verdict::UseAfterSettling);
         status |= verdict_status(verdict, input.quality);
-        let asked_before = self.setpoint_of(state.mode, input).unwrap_or(state.r_asked);
         status |= self.take_setpoint_and_offset(state, input);
         if !state.awake {
             state.awake = true;
@@ -73,10 +72,10 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             if held {
                 state.v = state.u;
             } else {
-                status |= self.close(state, input, &sample, asked_before);
+                status |= self.close(state, input, &sample);
             }
         } else {
-            status |= self.open(state, input, &sample, asked_before);
+            status |= self.open(state, input, &sample);
         }
         let limited = self.limit.apply(state.u, state.v);
         state.u = limited.u;
@@ -93,7 +92,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         status |= Status::LIMITED_HIGH.when(limited.high)
             | Status::LIMITED_LOW.when(limited.low)
             | Status::RATE_LIMITED.when(limited.rate)
-            | Status::SETPOINT_RAMPING.when(state.r != self.setpoint.into_range(state.r_asked))
+            | Status::SETPOINT_RAMPING.when(state.r != state.r_asked)
             | state.alarms;
         self.output(state, estimate, status)
     }
@@ -107,20 +106,19 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         state: &mut ControllerState<T, C::State>,
         input: &ControllerInput<T>,
         sample: &Checked<T>,
-        asked_before: T,
     ) -> Status {
         let begin = if !sample.was.is_automatic() {
             let there = self.target(sample.was, state.u, input).unwrap_or(state.u);
             Some(self.limit.apply(state.u, there).u)
         } else if sample.was != sample.mode {
-            let r = self.setpoint.advance(state.r, asked_before);
+            let r = self.setpoint.advance(state.r, self.asked_by(sample.was, state, input));
             let seen = self.seen(r, sample.y);
             let i = state.pid.integral() + self.pid.increment(&state.pid, seen) + self.unwind(state, sample);
             Some(i + self.pid.preview(&state.pid, seen) + state.offset + sample.u_f)
         } else {
             None
         };
-        state.r = self.setpoint.advance(state.r, state.r_asked);
+        state.r = self.setpoint.ramp(state.r, state.r_asked);
         self.automatic(state, input, sample, begin)
     }
 
@@ -160,18 +158,17 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         state: &mut ControllerState<T, C::State>,
         input: &ControllerInput<T>,
         sample: &Checked<T>,
-        asked_before: T,
     ) -> Status {
         let target = self.target(sample.mode, state.u, input);
         let left_now = sample.was.is_automatic();
         if left_now && target.is_none() && sample.mode != Mode::Fallback {
-            state.r = self.setpoint.advance(state.r, asked_before);
+            state.r = self.setpoint.advance(state.r, self.asked_by(sample.was, state, input));
             return self.automatic(state, input, sample, None);
         }
         state.r = if sample.mode.releases_setpoint() && self.setpoint.tracks() {
             self.setpoint.into_range(sample.y)
         } else {
-            self.setpoint.advance(state.r, state.r_asked)
+            self.setpoint.ramp(state.r, state.r_asked)
         };
         state.pd = self.pid.filter(&mut state.pid, self.seen(state.r, sample.y));
         state.v = target.unwrap_or(state.u);
@@ -208,6 +205,11 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         Some(r).filter(|r| r.is_finite_number())
     }
 
+    /// The set-point as `mode` asks for it in this sample.
+    fn asked_by(&self, mode: Mode, state: &ControllerState<T, C::State>, input: &ControllerInput<T>) -> T {
+        self.setpoint_of(mode, input).unwrap_or(state.r_asked)
+    }
+
     fn take_setpoint_and_offset(
         &self,
         state: &mut ControllerState<T, C::State>,
@@ -216,17 +218,18 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let mut status = Status::NONE;
         match self.setpoint_of(input.mode, input) {
             Some(r) => {
-                state.r_asked = r;
-                status |= Status::SETPOINT_LIMITED.when(self.setpoint.into_range(r) != r);
+                state.r_asked = self.setpoint.into_range(r);
+                status |= Status::SETPOINT_LIMITED.when(state.r_asked != r);
             }
             None => status |= Status::REJECTED,
         }
-        if input.offset.is_finite_number() {
+        if input.offset >= self.offset_lo && input.offset <= self.offset_hi {
             state.offset = input.offset;
         } else {
-            status |= Status::REJECTED;
+            status |= Status::REJECTED.when(!input.offset.is_finite_number());
+            let offset = if input.offset.is_finite_number() { input.offset } else { state.offset };
+            state.offset = offset.clamp_to(self.offset_lo, self.offset_hi);
         }
-        state.offset = state.offset.clamp_to(self.offset_lo, self.offset_hi);
         let manual_bad = input.mode == Mode::Manual && input.manual.is_some_and(|x| !x.is_finite_number());
         let track_bad = input.mode == Mode::Track && !input.track.is_finite_number();
         status | Status::REJECTED.when(manual_bad || track_bad)
