@@ -1,1 +1,27 @@
-//! stub
+//! Software in the loop: the code that is flashed, run against an exactly simulated plant.
+//!
+//! * [`scenario`]: what is to be run, read from TOML with every mistake at its line and column.
+//! * [`simulate`]: the run itself and its indices.
+//! * [`plant`]: plants that move exactly between the samples.
+//! * [`output`]: tables, JSON, CSV, messages with carets.
+//! * [`cli`]: the program `controller-sim`.
+//!
+//! ```
+//! use controller_sim_host::demo;
+//! use controller_sim_host::scenario::read;
+//! use controller_sim_host::simulate::{Precision, RunOptions, run};
+//!
+//! let demo = read(demo::SCENARIO, Precision::F32).expect("the demo is valid").scenario;
+//! let options = RunOptions { precision: Precision::F32, ..RunOptions::default() };
+//! let result = run(&demo, options).expect("and can be run");
+//! assert!(result.controllers.iter().all(|controller| controller.total.iae.is_finite()));
+//! ```
+
+#![forbid(unsafe_code)]
+
+pub mod cli;
+pub mod demo;
+pub mod output;
+pub mod plant;
+pub mod scenario;
+pub mod simulate;

@@ -5,3 +5,8 @@ pub mod cases;
 pub mod oracle;
 pub mod response;
 pub mod rig;
+
+/// The Rust example of the README, compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

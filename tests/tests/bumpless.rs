@@ -66,7 +66,7 @@ fn moments<T: Real>(
     list.push(("after a set-point step", rig.clone()));
     run(&mut rig, 10);
     list.push(("while moving", rig.clone()));
-    rig.d = -1.0 * sign;
+    rig.d = -sign;
     run(&mut rig, 40);
     list.push(("fighting a disturbance", rig.clone()));
     rig.input.r = T::from_f64(60.0);

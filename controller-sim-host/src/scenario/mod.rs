@@ -1,4 +1,26 @@
-//! What a scenario says: a plant, events, one or more controllers.
+//! What a scenario says: a plant, events, one or more controllers; and how it is [read] from TOML.
+#![doc = include_str!("format.md")]
+
+mod compensators;
+mod controllers;
+mod events;
+mod explain;
+mod expression;
+mod fault;
+mod log;
+mod number;
+mod pid;
+mod places;
+mod read;
+mod sections;
+mod start;
+mod suggest;
+mod syntax;
+mod table;
+mod trial;
+
+pub use fault::{Fault, Place, Related, code};
+pub use read::{Read, VERSION, read};
 
 use controller_core::{ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
 use controller_design::model::TransferFunction;
@@ -6,11 +28,11 @@ use controller_design::model::TransferFunction;
 /// A whole scenario, checked: everything a run needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// Sampling period [s].
+    /// Sampling period \[s\].
     pub ts: f64,
-    /// Length of the run [s].
+    /// Length of the run \[s\].
     pub duration: f64,
-    /// Time from reading `y` to acting `u` [s].
+    /// Time from reading `y` to acting `u` \[s\].
     pub latency: f64,
     /// Steps per sample for the metrics and the trace between samples, 1 or more.
     pub substeps: usize,
@@ -31,16 +53,16 @@ pub struct Scenario {
 /// The steady state before `t = 0`; the plant is at rest at it and the controllers are settled there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Initial {
-    /// Set-point and measurement [y].
+    /// Set-point and measurement \[y\].
     pub setpoint: f64,
-    /// Disturbance at the plant input [u].
+    /// Disturbance at the plant input \[u\].
     pub disturbance: f64,
 }
 
 /// White Gaussian noise on the measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// Standard deviation [y].
+    /// Standard deviation \[y\].
     pub std: f64,
     /// Seed of the generator.
     pub seed: u64,
@@ -49,9 +71,9 @@ pub struct Noise {
 /// An actuator with a range of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Actuator {
-    /// Lowest output it accepts [u].
+    /// Lowest output it accepts \[u\].
     pub lo: f64,
-    /// Highest output it accepts [u].
+    /// Highest output it accepts \[u\].
     pub hi: f64,
     /// The controller is told what was accepted.
     pub read_back: bool,
@@ -66,7 +88,7 @@ impl Default for Actuator {
 /// Something that happens at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
-    /// When [s]. Disturbances begin exactly then, everything else with the next sample.
+    /// When \[s\]. Disturbances begin exactly then, everything else with the next sample.
     pub at: f64,
     /// What happens, in the order it was written.
     pub changes: Vec<Change>,
@@ -77,19 +99,19 @@ pub struct Event {
 /// What an event changes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
-    /// The local set-point becomes this [y].
+    /// The local set-point becomes this \[y\].
     Setpoint(f64),
-    /// The remote set-point becomes this [y].
+    /// The remote set-point becomes this \[y\].
     RemoteSetpoint(f64),
     /// The disturbance at the plant input.
     Disturbance(Disturbance),
     /// The requested mode becomes this.
     Mode(Mode),
-    /// The manual output becomes this [u].
+    /// The manual output becomes this \[u\].
     Manual(f64),
-    /// The track output becomes this [u].
+    /// The track output becomes this \[u\].
     Track(f64),
-    /// The offset becomes this [u].
+    /// The offset becomes this \[u\].
     Offset(f64),
     /// The compensator is used or not.
     Compensator(bool),
@@ -99,28 +121,28 @@ pub enum Change {
     LostSamples(u32),
     /// A latched fallback is acknowledged.
     Acknowledge,
-    /// The controllers concerned get these parameters, bumplessly: the list names the controller and what it is from
-    /// now on.
+    /// The controllers concerned get these parameters, bumplessly: the list names the controller and what it
+    /// is from now on.
     Parameters(Vec<(usize, ControllerSpec)>),
 }
 
 /// A disturbance at the plant input. Each adds to those before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Disturbance {
-    /// The steady level becomes this [u] (ramps and pulses add to it).
+    /// The steady level becomes this \[u\] (ramps and pulses add to it).
     Step(f64),
-    /// A ramp of `slope` [u/s] for `duration` [s] (infinite: to the end); the level it reached stays.
+    /// A ramp of `slope` [u/s] for `duration` \[s\] (infinite: to the end); the level it reached stays.
     Ramp {
         /// Slope [u/s].
         slope: f64,
-        /// Length [s].
+        /// Length \[s\].
         duration: f64,
     },
-    /// A pulse of `height` [u] for `duration` [s].
+    /// A pulse of `height` \[u\] for `duration` \[s\].
     Pulse {
-        /// Height [u].
+        /// Height \[u\].
         height: f64,
-        /// Length [s].
+        /// Length \[s\].
         duration: f64,
     },
 }
@@ -139,6 +161,7 @@ pub struct ControllerSpec {
 }
 
 /// The disturbance block of a controller.
+#[allow(clippy::large_enum_variant)] // a handful in a run, never copied in one
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum CompensatorSpec {
     /// None.

@@ -11,9 +11,9 @@ pub struct Metrics {
     pub ise: f64,
     /// Integral of time times absolute error [y*s^2]; the clock starts with the stretch.
     pub itae: f64,
-    /// Largest absolute error [y].
+    /// Largest absolute error \[y\].
     pub e_max: f64,
-    /// Total variation of the output, `sum |u[k]-u[k-1]|` [u].
+    /// Total variation of the output, `sum |u[k]-u[k-1]|` \[u\].
     pub tv: f64,
 }
 

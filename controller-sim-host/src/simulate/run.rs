@@ -101,7 +101,7 @@ pub enum RunError {
         /// Its index.
         index: usize,
         /// Every fault.
-        faults: ConfigErrors,
+        faults: Box<ConfigErrors>,
     },
     /// The plant cannot rest at the initial set-point: it has a zero at `s = 0`.
     NoRest {
@@ -146,9 +146,9 @@ struct Requests<T> {
 
 fn run_one<T: Real>(scenario: &Scenario, index: usize, trace: bool) -> Result<ControllerResult, RunError> {
     let spec = &scenario.controllers[index];
-    let refused = |faults| RunError::Controller { index, faults };
+    let refused = |faults| RunError::Controller { index, faults: Box::new(faults) };
     let (ts, initial) = (scenario.ts, scenario.initial);
-    let disturbances = disturbances(scenario);
+    let disturbances = disturbances(scenario, index);
     let rest = (initial.setpoint, initial.disturbance);
     let (mut plant, u0) =
         ClosedLoop::new(&scenario.plant, ts, scenario.latency, scenario.substeps, rest, &disturbances)
@@ -255,9 +255,10 @@ fn apply<T: Real>(
     Ok(())
 }
 
-/// The disturbances of a scenario with their times, in order.
-fn disturbances(scenario: &Scenario) -> Vec<(f64, Disturbance)> {
-    let changes = scenario.events.iter().flat_map(|e| e.changes.iter().map(move |c| (e.at, c)));
+/// The disturbances that reach one controller's plant, with their times, in order.
+fn disturbances(scenario: &Scenario, index: usize) -> Vec<(f64, Disturbance)> {
+    let concerned = scenario.events.iter().filter(|e| e.controller.is_none_or(|only| only == index));
+    let changes = concerned.flat_map(|e| e.changes.iter().map(move |c| (e.at, c)));
     changes.filter_map(|(at, c)| if let Change::Disturbance(d) = c { Some((at, *d)) } else { None }).collect()
 }
 
@@ -341,7 +342,9 @@ impl Stretches {
     }
 
     fn finish(self) -> (Vec<Stretch>, Metrics) {
-        let list: Vec<Stretch> = self.list.into_iter().map(|(_, stretch)| stretch).collect();
+        // An event behind the last sample begins nothing.
+        let entered = self.list.into_iter().take(self.current + 1);
+        let list: Vec<Stretch> = entered.map(|(_, stretch)| stretch).collect();
         let total = list.iter().fold(Metrics::default(), |sum, s| sum.plus(&s.metrics));
         (list, total)
     }

@@ -1,0 +1,158 @@
+//! The table of a run, for people: one block per stretch of time, one line per controller.
+
+use super::precision_name;
+use crate::scenario::Scenario;
+use crate::simulate::{EventKind, Metrics, Precision, RunResult};
+
+const COLUMNS: [&str; 6] = ["IAE", "ISE", "ITAE", "IE", "e_max", "TV"];
+/// Width of a number with its mark.
+const CELL: usize = 12;
+/// Widest column of names: the table is at most 100 columns wide.
+const WIDEST_NAME: usize = 100 - 2 - COLUMNS.len() * CELL;
+
+/// A block of the table.
+struct Block<'a> {
+    title: String,
+    lines: Vec<(&'a str, &'a Metrics)>,
+    /// IE adds up errors of both signs: over several events a small one is no merit.
+    compares_ie: bool,
+}
+
+/// The indices of every controller in every stretch and over the whole run, at most 100 columns wide. Of two
+/// or more controllers the best value of each column is marked `*`.
+#[must_use]
+pub fn run_table(scenario: &Scenario, precision: Precision, result: &RunResult) -> String {
+    let mut text = format!(
+        "plant {}\nts = {} s, {} s, {}\n",
+        scenario.plant,
+        scenario.ts,
+        scenario.duration,
+        precision_name(precision)
+    );
+    let names = result.controllers.iter().map(|c| c.name.chars().count()).max().unwrap_or(0);
+    let width = names.clamp("controller".len(), WIDEST_NAME);
+    for block in blocks(result) {
+        text.push_str(&format!("\n{}\n", block.title));
+        push_line(&mut text, "controller", width, COLUMNS.map(|column| format!("{column} ")));
+        let cells: Vec<[String; 6]> = block.lines.iter().map(|(_, m)| values(m).map(format_number)).collect();
+        let best = best(&block);
+        for ((name, _), cells) in block.lines.iter().zip(&cells) {
+            let mut column = 0;
+            let marked = cells.each_ref().map(|cell| {
+                let mark = if best[column].as_ref() == Some(cell) { '*' } else { ' ' };
+                column += 1;
+                format!("{cell}{mark}")
+            });
+            push_line(&mut text, name, width, marked);
+        }
+    }
+    text.push_str("\nIAE, IE [y s], ISE [y^2 s], ITAE [y s^2], e_max [y], TV [u]");
+    text.push_str(if result.controllers.len() > 1 { "; * is the best of its column\n" } else { "\n" });
+    text
+}
+
+/// A line, without spaces at its end.
+fn push_line(text: &mut String, name: &str, width: usize, cells: [String; 6]) {
+    let shown: String = if name.chars().count() > width {
+        name.chars().take(width - 1).chain(['~']).collect()
+    } else {
+        name.to_owned()
+    };
+    let mut line = format!("  {shown:<width$}");
+    for cell in cells {
+        line.push_str(&format!("{cell:>CELL$}"));
+    }
+    text.push_str(line.trim_end());
+    text.push('\n');
+}
+
+/// The stretches in the order of time, those of all controllers together, then the whole run.
+fn blocks(result: &RunResult) -> Vec<Block<'_>> {
+    let mut starts: Vec<(f64, EventKind)> = Vec::new();
+    for stretch in result.controllers.iter().flat_map(|c| &c.events) {
+        if !starts.contains(&(stretch.at, stretch.kind)) {
+            starts.push((stretch.at, stretch.kind));
+        }
+    }
+    starts.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let mut blocks: Vec<Block<'_>> = Vec::new();
+    for (at, kind) in starts {
+        let own = |c: &'_ crate::simulate::ControllerResult| {
+            c.events.iter().position(|stretch| stretch.at == at && stretch.kind == kind)
+        };
+        let lines =
+            result.controllers.iter().filter_map(|c| own(c).map(|i| (&*c.name, &c.events[i].metrics)));
+        blocks.push(Block { title: title(at, kind), lines: lines.collect(), compares_ie: true });
+    }
+    if blocks.len() > 1 {
+        let lines = result.controllers.iter().map(|c| (&*c.name, &c.total));
+        blocks.push(Block { title: "whole run".to_owned(), lines: lines.collect(), compares_ie: false });
+    }
+    blocks
+}
+
+fn title(at: f64, kind: EventKind) -> String {
+    let what = match kind {
+        EventKind::Start => "start",
+        EventKind::Setpoint => "set-point",
+        EventKind::Disturbance => "disturbance",
+        EventKind::Other => "event",
+    };
+    format!("{what} at {at} s")
+}
+
+fn values(m: &Metrics) -> [f64; 6] {
+    [m.iae, m.ise, m.itae, m.ie, m.e_max, m.tv]
+}
+
+/// The best number of each column as it is printed, so that equal-looking numbers are marked alike; none for
+/// a column with nothing to compare.
+fn best(block: &Block<'_>) -> [Option<String>; 6] {
+    let mut columns = [const { None }; 6];
+    for (column, best) in columns.iter_mut().enumerate() {
+        if COLUMNS[column] == "IE" && !block.compares_ie {
+            continue;
+        }
+        let numbers =
+            || block.lines.iter().map(|(_, metrics)| values(metrics)[column]).filter(|x| x.is_finite());
+        // IE has a sign; the others are sizes already.
+        let least = numbers().min_by(|a, b| a.abs().total_cmp(&b.abs())).map(format_number);
+        let all_equal = numbers().all(|x| Some(format_number(x)) == least);
+        *best = least.filter(|_| !all_equal);
+    }
+    columns
+}
+
+/// Four significant digits.
+fn format_number(x: f64) -> String {
+    let size = x.abs();
+    if !x.is_finite() {
+        return "-".to_owned();
+    }
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e6).contains(&size) {
+        // An exponent of three digits takes the place of one.
+        return if (1e-99..1e99).contains(&size) { format!("{x:.3e}") } else { format!("{x:.2e}") };
+    }
+    // The rounding may carry into the next power of ten; that costs a digit, not correctness.
+    let before = size.log10().floor() as i32 + 1;
+    let digits = usize::try_from(4 - before).unwrap_or(0);
+    format!("{x:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits_and_fit_their_cells() {
+        let numbers = [0.53204, 12345.6, 1.0, 0.00012346, -2.5, 1e-9, 0.0, f64::NAN];
+        let shown = numbers.map(format_number);
+        assert_eq!(shown, ["0.5320", "12346", "1.000", "0.0001235", "-2.500", "1.000e-9", "0", "-"]);
+        for x in [-1e300, -1.2345e-300, 999_999.9, -0.000_999_99] {
+            assert!(format_number(x).len() + 1 < CELL, "{x}");
+        }
+    }
+}

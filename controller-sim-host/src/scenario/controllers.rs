@@ -1,0 +1,150 @@
+//! A `[[controller]]` as it is read, and as events change it.
+
+use super::ControllerSpec;
+use super::compensators;
+use super::fault::{Fault, code};
+use super::pid::PidDraft;
+use super::places::Places;
+use super::sections::{alarms, anti_windup, fallback, limits, mode, range, setpoint, take, take_optional};
+use super::table::{Table, shortened};
+use controller_core::{ControllerConfig, Mode, Param};
+use std::ops::Range;
+
+const PID: &str = "`pid = { kp = 1.0, ki = 0.5 }`";
+const LIMITS: &str = "`limits = { lo = 0.0, hi = 100.0 }`";
+const SETPOINT: &str = "`setpoint = { lo = 0.0, hi = 100.0 }`";
+const SETPOINT_LIMITS: &str = "`setpoint_limits = { lo = 0.0, hi = 100.0 }`";
+const ANTI_WINDUP: &str = "`anti_windup = { rule = \"back-calculation\" }`";
+const RANGE: &str = "`{ lo = 0.0, hi = 100.0 }`";
+
+/// The keys of an event that change parameters, in the order they are read.
+pub(super) const PARAMETER_KEYS: [&str; 7] =
+    ["pid", "limits", "setpoint_limits", "anti_windup", "deadband", "estimator", "observer"];
+
+/// Longest name: it heads the lines of tables.
+const LONGEST_NAME: usize = 60;
+
+/// A controller as far as it was read, with the places of its parameters.
+#[derive(Debug, Clone)]
+pub(super) struct Draft {
+    pid: PidDraft,
+    spec: ControllerSpec,
+    /// The name and where it is; none when it is missing or wrong.
+    pub(super) name_span: Option<Range<usize>>,
+    pub(super) places: Places,
+}
+
+impl Draft {
+    /// Reads a controller. It comes back whole even with faults, so that the rest can be checked, too.
+    pub(super) fn read(table: Table<'_>) -> Self {
+        let mut places = Places::new(table.place.clone());
+        let mut config = ControllerConfig::default();
+        let (name, name_span) = read_name(&table);
+
+        let pid = read_pid(&table, &mut places);
+        let compensator = compensators::read(&table, &mut places);
+        if let Some(part) = table.table("limits", LIMITS) {
+            limits(part, &mut config.limits, &mut places);
+        }
+        if let Some(part) = table.table("setpoint", SETPOINT) {
+            setpoint(part, &mut config.setpoint, &mut places);
+        }
+        if let Some(part) = table.table("anti_windup", ANTI_WINDUP) {
+            anti_windup(part, &mut config.anti_windup, &mut places);
+        }
+        take(&table, "deadband", Param::Deadband, &mut places, &mut config.deadband);
+        if let Some(part) = table.table("measurement", RANGE) {
+            let params = [Param::MeasurementLo, Param::MeasurementHi];
+            range(part, params, &mut config.measurement_lo, &mut config.measurement_hi, &mut places);
+        }
+        if let Some(part) = table.table("offset", RANGE) {
+            let params = [Param::OffsetLo, Param::OffsetHi];
+            range(part, params, &mut config.offset_lo, &mut config.offset_hi, &mut places);
+        }
+        if let Some(part) = table.table("fallback", "`fallback = { hold_samples = 3, action = \"hold\" }`") {
+            fallback(part, &mut config.fallback, &mut places);
+        }
+        if let Some(part) = table.table("alarms", "`alarms = { hi = 80.0, lo = 20.0, hysteresis = 1.0 }`") {
+            alarms(part, &mut config.alarms, &mut places);
+        }
+        take_optional(&table, "off_output", Param::OffOutput, &mut places, &mut config.off_output);
+        take(&table, "initial_output", Param::InitialOutput, &mut places, &mut config.initial_output);
+        let mode = mode(&table).unwrap_or(Mode::Auto);
+        table.finish();
+        Self { pid, spec: ControllerSpec { name, config, compensator, mode }, name_span, places }
+    }
+
+    /// Reads the parameter keys of an event over what the controller had so far.
+    pub(super) fn change(&mut self, event: &Table<'_>) {
+        let Self { pid, spec, places, .. } = self;
+        places.whole = event.place.clone();
+        if let Some(part) = event.table("pid", PID) {
+            pid.change(part, &spec.name, places);
+        }
+        if let Some(part) = event.table("limits", LIMITS) {
+            limits(part, &mut spec.config.limits, places);
+        }
+        if let Some(part) = event.table("setpoint_limits", SETPOINT_LIMITS) {
+            setpoint(part, &mut spec.config.setpoint, places);
+        }
+        if let Some(part) = event.table("anti_windup", ANTI_WINDUP) {
+            anti_windup(part, &mut spec.config.anti_windup, places);
+        }
+        take(event, "deadband", Param::Deadband, places, &mut spec.config.deadband);
+        compensators::change(event, spec, places);
+    }
+
+    pub(super) fn name(&self) -> &str {
+        &self.spec.name
+    }
+
+    /// What the controller is now.
+    pub(super) fn spec(&self) -> ControllerSpec {
+        let mut spec = self.spec.clone();
+        spec.config.pid = self.pid.config();
+        spec
+    }
+
+    pub(super) fn has_converted_gains(&self) -> bool {
+        self.pid.is_converted()
+    }
+}
+
+fn read_name(table: &Table<'_>) -> (String, Option<Range<usize>>) {
+    if table.span("name").is_none() {
+        table.missing("name", "`name = \"PI\"`");
+    }
+    let Some(name) = table.text("name") else {
+        return (String::new(), None);
+    };
+    let length = name.value.chars().count();
+    let problem = if name.value.trim().is_empty() {
+        "is empty"
+    } else if length > LONGEST_NAME {
+        "is too long"
+    } else if name.value.chars().any(char::is_control) {
+        "has a character that cannot be printed"
+    } else {
+        return (name.value.to_owned(), Some(name.span));
+    };
+    let message = format!(
+        "`name = \"{}\"` {problem}; allowed: 1 to {LONGEST_NAME} characters on one line",
+        shortened(name.value)
+    );
+    table.log.fault(Fault::new(code::OUT_OF_RANGE, name.span, message));
+    (String::new(), None)
+}
+
+fn read_pid(table: &Table<'_>, places: &mut Places) -> PidDraft {
+    let design = table.key_span("design");
+    if let Some(span) = design.clone() {
+        table.log.fault(
+            Fault::new(code::NOT_SUPPORTED, span, "the design rules are not part of this version")
+                .help("write the gains: `pid = { kp = ..., ki = ... }`"),
+        );
+    }
+    if table.span("pid").is_none() && design.is_none() {
+        table.missing("pid", PID);
+    }
+    table.table("pid", PID).map_or_else(PidDraft::default, |part| PidDraft::read(part, places))
+}

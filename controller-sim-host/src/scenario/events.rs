@@ -1,0 +1,230 @@
+//! The `[[event]]` tables: read in the order of time, so that changes of parameters build on each other.
+
+use super::controllers::{Draft, PARAMETER_KEYS};
+use super::fault::{Fault, code};
+use super::number::{Allowed, show};
+use super::sections::{mode, signal};
+use super::suggest::closest;
+use super::table::{Located, Table, shortened};
+use super::trial::{self, Context};
+use super::{Change, Disturbance, Event};
+
+/// Most samples that one event makes bad or loses.
+const MOST_SAMPLES: u64 = 1_000_000_000;
+
+/// Reads all events; `drafts` are the controllers as they start and end up as the events leave them.
+/// `duration` \[s\] is the length of the run, when it is known.
+pub(super) fn read(
+    root: &Table<'_>,
+    drafts: &mut [Draft],
+    duration: Option<f64>,
+    context: &Context,
+) -> Vec<Event> {
+    let mut tables: Vec<(Option<f64>, Table<'_>)> =
+        root.tables("event").into_iter().map(|table| (read_time(&table, duration), table)).collect();
+    // Stable: of two events at one time the one written first comes first.
+    tables.sort_by(|(a, _), (b, _)| a.unwrap_or(f64::INFINITY).total_cmp(&b.unwrap_or(f64::INFINITY)));
+    let mut events = Vec::new();
+    for (at, table) in tables {
+        let controller = read_controller(&table, drafts);
+        let mut changes = read_changes(&table);
+        if let Some(who) = concerned(&table, controller, drafts.len()) {
+            changes.extend(read_parameters(&table, drafts, &who, context));
+        }
+        let keys = table.written();
+        if keys.iter().all(|(key, ..)| matches!(*key, "at" | "controller")) {
+            let message = "this event changes nothing";
+            let help = "write what happens, for example `setpoint = 1.0` or `disturbance = 1.0`";
+            table.log.fault(Fault::new(code::MISSING_KEY, table.place.clone(), message).help(help));
+        }
+        changes.sort_by_key(|(start, _)| *start);
+        table.finish();
+        if let Some(at) = at {
+            let changes = changes.into_iter().map(|(_, change)| change).collect();
+            events.push(Event { at, changes, controller: controller.flatten() });
+        }
+    }
+    events
+}
+
+/// Where a key is written, and what it changes.
+type Placed = (usize, Change);
+
+fn read_time(table: &Table<'_>, duration: Option<f64>) -> Option<f64> {
+    if table.span("at").is_none() {
+        table.missing("at", "when it happens, in seconds: `at = 10.0`");
+    }
+    let at = table.number("at")?;
+    let end = duration.unwrap_or(1e18);
+    if at.value >= 0.0 && at.value < end {
+        // No sign on a zero: it would be printed.
+        return Some(at.value.abs());
+    }
+    let raw = table.log.slice(&at.span);
+    let message = if at.value < 0.0 {
+        format!("`at = {raw}` is before the run begins; allowed: 0 s to below {} s", show(end))
+    } else {
+        format!(
+            "`at = {raw}` is not before the end of the run; allowed: 0 s to below `duration`, {} s",
+            show(end)
+        )
+    };
+    let fault = Fault::new(code::OUT_OF_RANGE, at.span, message);
+    table.log.fault(if at.value < 0.0 {
+        fault.help("what holds before `t = 0` is written in `[initial]`")
+    } else {
+        fault.help("make the run longer, or the event earlier")
+    });
+    None
+}
+
+/// The controller the event is restricted to: none when there is no such name, else the index or all.
+fn read_controller(table: &Table<'_>, drafts: &[Draft]) -> Option<Option<usize>> {
+    if table.span("controller").is_none() {
+        return Some(None);
+    }
+    let name = table.text("controller")?;
+    let index = drafts.iter().position(|draft| draft.name_span.is_some() && draft.name() == name.value);
+    if index.is_none() {
+        let names: Vec<&str> = drafts.iter().map(Draft::name).filter(|name| !name.is_empty()).collect();
+        let message = format!("there is no controller `{}`", shortened(name.value));
+        let help = match closest(name.value, &names) {
+            Some(meant) => format!("did you mean \"{meant}\"?"),
+            None if names.is_empty() => "write a `[[controller]]` with this name".to_owned(),
+            None => format!("the controllers are \"{}\"", names.join("\", \"")),
+        };
+        // A controller whose own name is wrong may be the one that is meant.
+        if drafts.iter().all(|draft| draft.name_span.is_some()) {
+            table.log.fault(Fault::new(code::UNKNOWN_NAME, name.span, message).help(help));
+        }
+    }
+    index.map(Some)
+}
+
+/// The controllers whose parameters the event changes; none when it changes none.
+fn concerned(table: &Table<'_>, controller: Option<Option<usize>>, count: usize) -> Option<Vec<usize>> {
+    let any = PARAMETER_KEYS.iter().filter(|&&key| table.span(key).is_some()).count() > 0;
+    match controller? {
+        _ if !any => None,
+        Some(one) => Some(vec![one]),
+        None => Some((0..count).collect()),
+    }
+}
+
+fn read_parameters(
+    table: &Table<'_>,
+    drafts: &mut [Draft],
+    who: &[usize],
+    context: &Context,
+) -> Option<Placed> {
+    let start = PARAMETER_KEYS.iter().filter_map(|key| table.key_span(key)).map(|span| span.start).min()?;
+    let mut list = Vec::new();
+    for &index in who {
+        let Some(draft) = drafts.get_mut(index) else { continue };
+        let before = table.log.count();
+        draft.change(table);
+        trial::check(draft, context, table.log, before);
+        list.push((index, draft.spec()));
+    }
+    Some((start, Change::Parameters(list)))
+}
+
+/// Everything but parameters.
+fn read_changes(table: &Table<'_>) -> Vec<Placed> {
+    let mut changes: Vec<Placed> = Vec::new();
+    let mut add = |key: &'static str, change: Option<Change>| {
+        if let (Some(span), Some(change)) = (table.key_span(key), change) {
+            changes.push((span.start, change));
+        }
+    };
+    add("setpoint", read_setpoint(table));
+    add("disturbance", read_disturbance(table).map(Change::Disturbance));
+    add("remote_setpoint", signal(table, "remote_setpoint").map(Change::RemoteSetpoint));
+    add("mode", mode(table).map(Change::Mode));
+    add("manual", signal(table, "manual").map(Change::Manual));
+    add("track", signal(table, "track").map(Change::Track));
+    add("offset", signal(table, "offset").map(Change::Offset));
+    add("compensator", table.flag("compensator").map(|on| Change::Compensator(on.value)));
+    add("bad_samples", read_count(table, "bad_samples").map(Change::BadSamples));
+    add("lost_samples", read_count(table, "lost_samples").map(Change::LostSamples));
+    add("acknowledge", read_acknowledge(table).then_some(Change::Acknowledge));
+    changes
+}
+
+fn read_setpoint(table: &Table<'_>) -> Option<Change> {
+    if table.is_table("setpoint") {
+        let (name, span) = (table.name("setpoint"), table.key_span("setpoint")?);
+        let message = format!("`{name}` of an event is a number, the new set-point");
+        let help = "its range and rate are changed by `setpoint_limits = { ... }`";
+        table.log.fault(Fault::new(code::WRONG_TYPE, span, message).help(help));
+        return None;
+    }
+    signal(table, "setpoint").map(Change::Setpoint)
+}
+
+fn read_count(table: &Table<'_>, key: &'static str) -> Option<u32> {
+    table.integer_in(key, 1, MOST_SAMPLES).and_then(|n| u32::try_from(n.value).ok())
+}
+
+fn read_acknowledge(table: &Table<'_>) -> bool {
+    let Some(flag) = table.flag("acknowledge") else { return false };
+    if !flag.value {
+        let message = "`acknowledge = false` has no meaning";
+        let help = "an acknowledgement is a single event: write `acknowledge = true`, or leave it out";
+        table.log.fault(Fault::new(code::CONFLICT, flag.span, message).help(help));
+    }
+    flag.value
+}
+
+/// `disturbance = 1.0`, `{ step = 1.0 }`, `{ ramp = 0.1, duration = 5.0 }` or `{ pulse = 1.0, duration = 0.5
+/// }`.
+fn read_disturbance(table: &Table<'_>) -> Option<Disturbance> {
+    if !table.is_table("disturbance") {
+        return signal(table, "disturbance").map(Disturbance::Step);
+    }
+    let part = table.table("disturbance", "`disturbance = { step = 1.0 }`")?;
+    let kinds = ["step", "ramp", "pulse"];
+    let step = signal(&part, "step");
+    let ramp = part.number_in("ramp", Allowed::new(-1e12, 1e12, "per second"));
+    let pulse = signal(&part, "pulse");
+    let duration = part.number_in("duration", Allowed::TIME);
+    let given: Vec<&'static str> = kinds.into_iter().filter(|kind| part.span(kind).is_some()).collect();
+    let (log, place) = (part.log, part.place.clone());
+    let duration_span = part.span("duration");
+    let duration_key = part.key_span("duration");
+    part.finish();
+    let write =
+        "write `{ step = 1.0 }`, `{ ramp = 0.1, duration = 5.0 }` or `{ pulse = 1.0, duration = 0.5 }`";
+    let [kind] = given[..] else {
+        let (code, message) = match given.len() {
+            0 => (code::MISSING_KEY, "`disturbance` has none of `step`, `ramp` and `pulse`".to_owned()),
+            _ => (
+                code::CONFLICT,
+                format!("`disturbance` has `{}`; one of them is allowed", given.join("` and `")),
+            ),
+        };
+        log.fault(Fault::new(code, place, message).help(write));
+        return None;
+    };
+    let length = duration.map(|Located { value, .. }| value);
+    match kind {
+        "step" => {
+            if let Some(span) = duration_key {
+                let message = "a step has no `duration`";
+                log.fault(Fault::new(code::CONFLICT, span, message).help("a step that ends is a `pulse`"));
+            }
+            step.map(Disturbance::Step)
+        }
+        "ramp" => {
+            let duration = if duration_span.is_some() { length? } else { f64::INFINITY };
+            ramp.map(|slope| Disturbance::Ramp { slope: slope.value, duration })
+        }
+        _ => {
+            if duration_span.is_none() {
+                let message = "`disturbance.duration` is missing: a pulse has an end";
+                log.fault(Fault::new(code::MISSING_KEY, place, message).help(write));
+            }
+            Some(Disturbance::Pulse { height: pulse?, duration: length? })
+        }
+    }
+}

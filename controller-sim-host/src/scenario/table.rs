@@ -1,0 +1,309 @@
+//! A walker over a TOML table: it hands out values with their places and notes everything that is wrong.
+
+use super::fault::{Fault, code};
+use super::log::Log;
+use super::number::{Allowed, show};
+use super::suggest::closest;
+use std::cell::RefCell;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A value and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Located<T> {
+    pub(super) value: T,
+    pub(super) span: Range<usize>,
+}
+
+/// A table that is being read. Every key that is asked for is known; [`finish`](Self::finish) reports the
+/// others.
+#[derive(Debug)]
+pub(super) struct Table<'a> {
+    entries: &'a DeTable<'a>,
+    /// Where to point at for what is missing: the header, or the whole inline table.
+    pub(super) place: Range<usize>,
+    path: String,
+    asked: RefCell<Vec<&'static str>>,
+    /// Keys that must be there and are not, with their faults: a misspelt key takes its own away.
+    missing: RefCell<Vec<(&'static str, Fault)>>,
+    pub(super) log: &'a Log<'a>,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn root(entries: &'a DeTable<'a>, log: &'a Log<'a>) -> Self {
+        Self::new(entries, 0..0, String::new(), log)
+    }
+
+    fn new(entries: &'a DeTable<'a>, place: Range<usize>, path: String, log: &'a Log<'a>) -> Self {
+        Self { entries, place, path, asked: RefCell::default(), missing: RefCell::default(), log }
+    }
+
+    /// The name of `key` in messages, for example `limits.lo`.
+    pub(super) fn name(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    fn entry(&self, key: &'static str) -> Option<(Range<usize>, &'a Spanned<DeValue<'a>>)> {
+        {
+            let mut asked = self.asked.borrow_mut();
+            if !asked.contains(&key) {
+                asked.push(key);
+            }
+        }
+        // The map borrows the key as text, which loses the place of the key: look it up together with the
+        // value.
+        self.entries.get_key_value(key).map(|(k, v)| (k.span(), v))
+    }
+
+    /// The value's place, when the key is there.
+    pub(super) fn span(&self, key: &'static str) -> Option<Range<usize>> {
+        self.entry(key).map(|(_, value)| value.span())
+    }
+
+    /// The key's own place, when it is there.
+    pub(super) fn key_span(&self, key: &'static str) -> Option<Range<usize>> {
+        self.entry(key).map(|(key, _)| key)
+    }
+
+    /// Reports that `key` is not there; `example` says how to write it.
+    pub(super) fn missing(&self, key: &'static str, example: &str) {
+        let message = format!("`{}` is missing", self.name(key));
+        let fault = Fault::new(code::MISSING_KEY, self.place.clone(), message);
+        self.missing.borrow_mut().push((key, fault.help(format!("write {example}"))));
+    }
+
+    /// Reports that the value of `key` is of the wrong type.
+    fn wrong_type(
+        &self,
+        key: &'static str,
+        value: &Spanned<DeValue<'a>>,
+        needed: &str,
+        help: Option<String>,
+    ) {
+        let is = type_name(value.get_ref());
+        let mut fault = Fault::new(
+            code::WRONG_TYPE,
+            value.span(),
+            format!("`{}` is {is}; {needed} is needed", self.name(key)),
+        );
+        fault.help = help;
+        self.log.fault(fault);
+    }
+
+    /// A number, infinite ones and NaN included.
+    pub(super) fn any_number(&self, key: &'static str) -> Option<Located<f64>> {
+        let (_, value) = self.entry(key)?;
+        if let Some(number) = to_f64(value.get_ref()) {
+            return Some(Located { value: number, span: value.span() });
+        }
+        let help = value.get_ref().as_str().and_then(|text| number_in_text(key, text));
+        self.wrong_type(key, value, "a number", help);
+        None
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, key: &'static str) -> Option<Located<f64>> {
+        let number = self.any_number(key)?;
+        if number.value.is_finite() {
+            return Some(number);
+        }
+        let raw = self.log.slice(&number.span);
+        let problem = match raw {
+            _ if raw.contains("inf") || raw.contains("nan") => "is not a finite number",
+            _ => "is too large for a number; the largest is 1.8e308",
+        };
+        let message = format!("`{} = {raw}` {problem}", self.name(key));
+        self.log.fault(Fault::new(code::OUT_OF_RANGE, number.span, message));
+        None
+    }
+
+    /// A number within a range.
+    pub(super) fn number_in(&self, key: &'static str, allowed: Allowed) -> Option<Located<f64>> {
+        let number = self.number(key)?;
+        if number.value >= allowed.min && number.value <= allowed.max {
+            return Some(number);
+        }
+        self.out_of_range(key, &number.span, &show(number.value), &allowed.text());
+        None
+    }
+
+    /// Reports that a value is not one of those allowed.
+    pub(super) fn out_of_range(&self, key: &str, span: &Range<usize>, value: &str, allowed: &str) {
+        let message = format!("`{} = {value}` is out of range; allowed: {allowed}", self.name(key));
+        self.log.fault(Fault::new(code::OUT_OF_RANGE, span.clone(), message));
+    }
+
+    /// A whole number within `min..=max`.
+    pub(super) fn integer_in(&self, key: &'static str, min: u64, max: u64) -> Option<Located<u64>> {
+        let (_, value) = self.entry(key)?;
+        let span = value.span();
+        let Some(integer) = value.get_ref().as_integer() else {
+            let number = to_f64(value.get_ref()).or_else(|| value.get_ref().as_str()?.parse().ok());
+            let help = number
+                .filter(|x| x.fract() == 0.0 && x.abs() < 1e15)
+                .map(|x| format!("write `{key} = {x:.0}`"));
+            self.wrong_type(key, value, "a whole number", help);
+            return None;
+        };
+        match u64::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(n) if n >= min && n <= max => Some(Located { value: n, span }),
+            _ => {
+                let shown = self.log.slice(&span);
+                self.out_of_range(key, &span, shown, &format!("{min} to {max}"));
+                None
+            }
+        }
+    }
+
+    /// A text.
+    pub(super) fn text(&self, key: &'static str) -> Option<Located<&'a str>> {
+        let (_, value) = self.entry(key)?;
+        if let Some(text) = value.get_ref().as_str() {
+            return Some(Located { value: text, span: value.span() });
+        }
+        self.wrong_type(key, value, "a text", Some(format!("write it in quotes: `{key} = \"...\"`")));
+        None
+    }
+
+    /// `true` or `false`.
+    pub(super) fn flag(&self, key: &'static str) -> Option<Located<bool>> {
+        let (_, value) = self.entry(key)?;
+        if let Some(flag) = value.get_ref().as_bool() {
+            return Some(Located { value: flag, span: value.span() });
+        }
+        self.wrong_type(key, value, "`true` or `false`", Some("without quotes".to_owned()));
+        None
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&self, key: &'static str, words: &[(&str, T)]) -> Option<Located<T>> {
+        let text = self.text(key)?;
+        if let Some(&(_, value)) = words.iter().find(|(word, _)| *word == text.value) {
+            return Some(Located { value, span: text.span });
+        }
+        let names: Vec<&str> = words.iter().map(|&(word, _)| word).collect();
+        let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+        let message = format!(
+            "`{} = \"{}\"` is not known; allowed: {}",
+            self.name(key),
+            shortened(text.value),
+            quoted.join(", ")
+        );
+        let mut fault = Fault::new(code::OUT_OF_RANGE, text.span, message);
+        fault.help = closest(text.value, &names).map(|name| format!("did you mean \"{name}\"?"));
+        self.log.fault(fault);
+        None
+    }
+
+    /// Whether the value of `key` is a table; says nothing about another type.
+    pub(super) fn is_table(&self, key: &'static str) -> bool {
+        self.entry(key).is_some_and(|(_, value)| value.get_ref().is_table())
+    }
+
+    /// A table; `example` says how to write one.
+    pub(super) fn table(&self, key: &'static str, example: &str) -> Option<Table<'a>> {
+        let (_, value) = self.entry(key)?;
+        if let Some(entries) = value.get_ref().as_table() {
+            return Some(Table::new(entries, value.span(), self.name(key), self.log));
+        }
+        self.wrong_type(key, value, "a table", Some(format!("write {example}")));
+        None
+    }
+
+    /// The tables of `[[key]]`, none when there is no such key.
+    pub(super) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
+        let Some((_, value)) = self.entry(key) else {
+            return Vec::new();
+        };
+        let help = format!("each {key} begins with a line `[[{key}]]`");
+        let Some(list) = value.get_ref().as_array() else {
+            self.wrong_type(key, value, "a list of tables", Some(help));
+            return Vec::new();
+        };
+        let mut tables = Vec::new();
+        for item in list.iter() {
+            match item.get_ref().as_table() {
+                // Keys of a list element are called by their own names: the place says which element it is.
+                Some(entries) => tables.push(Table::new(entries, item.span(), String::new(), self.log)),
+                None => self.wrong_type(key, item, "a table", Some(help.clone())),
+            }
+        }
+        tables
+    }
+
+    /// The keys that are there, in the order they were written, each with the key's and the value's place.
+    pub(super) fn written(&self) -> Vec<(&'a str, Range<usize>, Range<usize>)> {
+        let mut keys: Vec<_> =
+            self.entries.iter().map(|(key, value)| (&**key.get_ref(), key.span(), value.span())).collect();
+        keys.sort_by_key(|(_, span, _)| span.start);
+        keys
+    }
+
+    /// Reports every key that was not asked for, and every one that is missing.
+    pub(super) fn finish(self) {
+        let asked = self.asked.borrow();
+        for (key, span, _) in self.written() {
+            if asked.contains(&key) {
+                continue;
+            }
+            if self.log.is_full() {
+                break;
+            }
+            let place = if self.path.is_empty() { String::new() } else { format!(" in `{}`", self.path) };
+            let message = format!("unknown key `{}`{place}", shortened(key));
+            let absent: Vec<&str> =
+                asked.iter().copied().filter(|known| !self.entries.contains_key(*known)).collect();
+            let meant = closest(key, &absent).or_else(|| closest(key, &asked));
+            self.missing.borrow_mut().retain(|(other, _)| Some(*other) != meant);
+            let help = match meant {
+                Some(meant @ ("event" | "controller")) => format!("did you mean `[[{meant}]]`?"),
+                Some(meant) => format!("did you mean `{meant}`?"),
+                None => format!("known keys: {}", asked.join(", ")),
+            };
+            self.log.fault(Fault::new(code::UNKNOWN_KEY, span, message).help(help));
+        }
+        for (_, fault) in self.missing.take() {
+            self.log.fault(fault);
+        }
+    }
+}
+
+/// Text from the scenario as it may stand in a message: not too long, on one line.
+pub(super) fn shortened(text: &str) -> String {
+    let clean: String = text.chars().take(60).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().count() > 60 { format!("{clean}...") } else { clean }
+}
+
+fn to_f64(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(n) => match i128::from_str_radix(n.as_str(), n.radix()) {
+            #[allow(clippy::cast_precision_loss)] // the nearest number is what is meant
+            Ok(n) => Some(n as f64),
+            Err(_) if n.radix() == 10 => n.as_str().parse().ok(),
+            Err(_) => Some(f64::INFINITY),
+        },
+        DeValue::Float(x) => x.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+/// Help for a number that was written as a text.
+fn number_in_text(key: &str, text: &str) -> Option<String> {
+    let with_point = text.trim().replace(',', ".");
+    let number: f64 = with_point.parse().ok()?;
+    let quotes = if text.contains(',') { "without quotes and with a point" } else { "without quotes" };
+    Some(format!("write it {quotes}: `{key} = {}`", show(number)))
+}
+
+fn type_name(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(true) => "`true`",
+        DeValue::Boolean(false) => "`false`",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}

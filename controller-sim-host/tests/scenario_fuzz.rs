@@ -1,0 +1,165 @@
+//! Any text at all: never a panic, and every place inside the text.
+
+use controller_sim_host::demo;
+use controller_sim_host::output::{Problem, Severity, Source, error_json, render};
+use controller_sim_host::scenario::{Fault, read};
+use controller_sim_host::simulate::Precision;
+
+const TEXTS: [&str; 4] = [
+    demo::SCENARIO,
+    include_str!("../scenarios/windup.toml"),
+    include_str!("../scenarios/sensor_failure.toml"),
+    include_str!("data/base.toml"),
+];
+
+/// What is put in: characters that mean something in TOML or in expressions, and some that mean trouble.
+const PIECES: [&str; 36] = [
+    "{",
+    "}",
+    "[",
+    "]",
+    "[[",
+    "]]",
+    "=",
+    ",",
+    ".",
+    "\"",
+    "\"\"\"",
+    "'",
+    "\n",
+    "\r\n",
+    "\r",
+    "#",
+    "\\",
+    "\\u00e9",
+    "\u{e9}",
+    "\u{1f600}",
+    "\u{feff}",
+    "\u{0}",
+    "\t",
+    " ",
+    "-",
+    "1e999",
+    "nan",
+    "inf",
+    "0",
+    "1e-300",
+    "-1",
+    "99999999999999999999",
+    "s",
+    "exp(",
+    ")",
+    "true",
+];
+
+/// A small generator with a fixed start: the same texts on every machine.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % n.max(1) as u64) as usize
+    }
+}
+
+/// A random character boundary of `text`.
+fn place(text: &str, random: &mut Random) -> usize {
+    let at = random.below(text.len() + 1);
+    (0..=at).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
+}
+
+fn mutate(text: &mut String, random: &mut Random) {
+    match random.below(6) {
+        0 => {
+            let piece = PIECES[random.below(PIECES.len())];
+            text.insert_str(place(text, random), piece);
+        }
+        1 => {
+            let start = place(text, random);
+            let length = random.below(12);
+            let end = (start..text.len()).filter(|&i| text.is_char_boundary(i)).nth(length);
+            text.replace_range(start..end.unwrap_or(text.len()), "");
+        }
+        2 => text.truncate(place(text, random)),
+        3 => {
+            let mut lines: Vec<&str> = text.lines().collect();
+            let (from, to) = (random.below(lines.len()), random.below(lines.len()));
+            if let Some(line) = lines.get(from).copied() {
+                lines.insert(to, line);
+            }
+            *text = lines.join("\n");
+        }
+        4 => {
+            let mut lines: Vec<&str> = text.lines().collect();
+            if !lines.is_empty() {
+                lines.remove(random.below(lines.len()));
+            }
+            *text = lines.join("\n");
+        }
+        _ => {
+            let (start, piece) = (place(text, random), PIECES[random.below(PIECES.len())]);
+            let end = (start + 1..=text.len()).find(|&i| text.is_char_boundary(i)).unwrap_or(text.len());
+            text.replace_range(start..end, piece);
+        }
+    }
+}
+
+fn check(text: &str, faults: &[Fault], severity: Severity) {
+    for fault in faults {
+        for span in std::iter::once(&fault.span).chain(fault.related.as_ref().map(|related| &related.span)) {
+            assert!(text.get(span.clone()).is_some(), "{span:?} is not in:\n{text}\n{fault:?}");
+        }
+        assert!(!fault.message.is_empty() && !fault.message.contains('\n'), "{fault:?}");
+        let place = fault.place(text);
+        assert!(place.line <= text.matches('\n').count() + 1, "{fault:?}");
+    }
+    let source = Source { name: "fuzz.toml", text };
+    for colours in [false, true] {
+        let shown = render(source, faults, severity, colours);
+        assert_eq!(shown.is_empty(), faults.is_empty());
+    }
+    let json = error_json(&Problem::new("none", ""), text, faults);
+    assert!(serde_json::from_str::<serde_json::Value>(&json).is_ok(), "{json}");
+}
+
+#[test]
+fn no_text_makes_the_reader_panic() {
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let (mut good, mut bad) = (0, 0);
+    for round in 0..3000 {
+        let mut text = TEXTS[round % TEXTS.len()].to_owned();
+        for _ in 0..=random.below(4) {
+            mutate(&mut text, &mut random);
+        }
+        let precision = if round % 2 == 0 { Precision::F64 } else { Precision::F32 };
+        match read(&text, precision) {
+            Ok(read) => {
+                good += 1;
+                check(&text, &read.warnings, Severity::Warning);
+            }
+            Err(faults) => {
+                bad += 1;
+                assert!(!faults.is_empty(), "no reason given for:\n{text}");
+                check(&text, &faults, Severity::Error);
+            }
+        }
+    }
+    // Both kinds must be among them, or the test shows nothing.
+    assert!(good > 100 && bad > 1000, "{good} good, {bad} bad");
+}
+
+#[test]
+fn odd_texts() {
+    let deep = format!("a = {}", "[".repeat(50_000));
+    let nested = format!("plant = {}", "{ a = ".repeat(50_000));
+    let long = format!("version = 1\nname = \"{}\"\n", "x".repeat(1_000_000));
+    let dotted = format!("{} = 1\n", ["a"; 5_000].join("."));
+    for text in
+        ["", "\n", "\u{feff}", "\u{0}", "=", "[", "[[", "\"", "'''", "\r", &deep, &nested, &long, &dotted]
+    {
+        let faults = read(text, Precision::F64).expect_err("no scenario");
+        check(text, &faults, Severity::Error);
+    }
+}

@@ -1,0 +1,59 @@
+//! What the README shows is true: its scenario runs, the excerpt of the demo's table is what the demo prints, the scenario
+//! files that come with the program run in both number types.
+
+use controller_sim_host::output::run_table;
+use controller_sim_host::scenario::read;
+use controller_sim_host::simulate::{Precision, RunOptions, run};
+
+const README: &str = include_str!("../../README.md");
+
+/// The first code block of this language behind `heading`.
+fn block(heading: &str, language: &str) -> String {
+    let behind = README.split_once(heading).unwrap_or_else(|| panic!("no heading {heading}")).1;
+    let opening = format!("```{language}\n");
+    let inside = behind.split_once(&opening).unwrap_or_else(|| panic!("no {language} block")).1;
+    inside.split_once("```").expect("the block ends").0.to_owned()
+}
+
+#[test]
+fn the_first_scenario_runs_and_the_observer_helps() {
+    let text = block("## A first scenario", "toml");
+    let read = read(&text, Precision::F64).unwrap_or_else(|faults| panic!("{faults:?}"));
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+    let result = run(&read.scenario, RunOptions::default()).expect("valid");
+    let load = |i: usize| result.controllers[i].events[1].metrics;
+    assert!(load(1).iae < 0.55 * load(0).iae, "{:?} {:?}", load(0), load(1));
+    assert!(
+        (result.controllers[1].events[0].metrics.iae / result.controllers[0].events[0].metrics.iae - 1.0)
+            .abs()
+            < 1e-6
+    );
+}
+
+#[test]
+fn the_excerpt_of_the_demo_is_what_the_demo_prints() {
+    let shown = block("## The two commands", "text");
+    let read = read(controller_sim_host::demo::SCENARIO, Precision::F64).expect("the demo is valid");
+    let result = run(&read.scenario, RunOptions::default()).expect("valid");
+    let printed = run_table(&read.scenario, Precision::F64, &result);
+    for line in shown.lines() {
+        assert!(printed.lines().any(|l| l.trim_end() == line.trim_end()), "not printed: {line}\n{printed}");
+    }
+}
+
+#[test]
+fn the_scenarios_that_come_along_run() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../controller-sim-host/scenarios");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("the folder") {
+        let path = entry.expect("an entry").path();
+        let text = std::fs::read_to_string(&path).expect("text");
+        for precision in [Precision::F64, Precision::F32] {
+            let read = read(&text, precision).unwrap_or_else(|f| panic!("{}: {f:?}", path.display()));
+            let result = run(&read.scenario, RunOptions { precision, trace: false }).expect("valid");
+            assert!(result.controllers.iter().all(|c| c.total.iae.is_finite() && c.total.iae > 0.0));
+        }
+        count += 1;
+    }
+    assert!(count >= 4);
+}
