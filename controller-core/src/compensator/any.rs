@@ -3,7 +3,8 @@
 use super::MAX_EXCESS;
 use super::config::CompensatorConfig;
 use super::discretise::{Discretised, discretise};
-use super::kernel::{Coefficients, Compensate, CompensatorOutput, LagsView, Sealed, next_tap};
+use super::kernel::{Coefficients, Compensate, CompensatorOutput, Sealed};
+use super::view::{LagsView, StateRef, StateView};
 use crate::delay::{DelayLine, Memory};
 use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::lag::Lag;
@@ -100,7 +101,7 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     #[must_use]
     pub fn needed_capacity(config: &CompensatorConfig, ts: f64) -> usize {
         let delay = config.model.dead_time + config.latency;
-        super::discretise::whole_samples(delay, ts, super::discretise::nearness::<f32>()).0.saturating_add(1)
+        super::shape::whole_samples(delay, ts, super::shape::nearness::<f32>()).0.saturating_add(1)
     }
 
     /// Order of the chains and number of excess sections.
@@ -128,8 +129,17 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
 }
 
 impl<T: Real, M> AnyCompensatorState<T, M> {
-    fn lags(&mut self) -> LagsView<'_, T> {
-        LagsView { y: &mut self.y, u: &mut self.u, e: &mut self.e }
+    #[inline(always)]
+    fn view(&mut self) -> StateView<'_, T, M> {
+        StateView {
+            lags: LagsView { y: &mut self.y, u: &mut self.u, e: &mut self.e },
+            line: &mut self.line,
+            reference: &mut self.reference,
+        }
+    }
+
+    fn as_ref(&self) -> StateRef<'_, T, M> {
+        StateRef { y: &self.y, u: &self.u, e: &self.e, line: &self.line, reference: self.reference }
     }
 }
 
@@ -139,27 +149,19 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
     type State = AnyCompensatorState<T, M>;
 
     fn sample(&self, state: &mut Self::State, y: T, u_applied: T) -> CompensatorOutput<T> {
-        state.line.push(u_applied);
-        let u = state.line.tap(self.delay);
-        let x = self.coefficients().advance(&mut state.lags(), y, u);
-        let d_hat = state.reference - x;
-        CompensatorOutput { u_f: -(self.gain * d_hat), d_hat }
+        state.view().sample(&self.coefficients(), y, u_applied)
     }
 
     fn settle(&self, state: &mut Self::State, y0: T, u0: T) {
-        state.line.fill(u0);
-        state.reference = self.coefficients().settle(&mut state.lags(), y0, u0);
+        state.view().settle(&self.coefficients(), y0, u0);
     }
 
     fn resettle(&self, state: &mut Self::State, y0: T) {
-        let u = state.line.tap(self.delay);
-        state.reference = self.coefficients().settle_y(&mut state.lags(), y0, u);
+        state.view().resettle(&self.coefficients(), y0);
     }
 
     fn skip(&self, state: &mut Self::State, u: T, n: usize) {
-        for _ in 0..n.min(state.line.capacity()) {
-            state.line.push(u);
-        }
+        state.view().skip(u, n);
     }
 
     /// As the trait says; between laws of different shapes the lags cannot be kept: they settle at `y` and at what
@@ -168,7 +170,7 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
         let estimate = |law: &Self, state: &Self::State| {
             let mut copy = (state.y.clone(), state.u.clone(), state.e.clone());
             let mut lags = LagsView { y: &mut copy.0, u: &mut copy.1, e: &mut copy.2 };
-            law.coefficients().advance(&mut lags, y, next_tap(&state.line, law.delay, u))
+            law.coefficients().advance(&mut lags, y, state.as_ref().next_tap(law.delay, u))
         };
         let d_hat = state.reference - estimate(old, state);
         if self.shape() == old.shape() {
@@ -179,8 +181,8 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
             state.y = core::iter::repeat_n(zero, self.g.len()).collect();
             state.u = state.y.clone();
             state.e = core::iter::repeat_n(zero, self.e_gain.len()).collect();
-            let next = next_tap(&state.line, self.delay, u);
-            state.reference = self.coefficients().settle(&mut state.lags(), y, next);
+            let next = state.as_ref().next_tap(self.delay, u);
+            state.reference = self.coefficients().settle(&mut state.view().lags, y, next);
             old.gain * d_hat
         }
     }
@@ -192,25 +194,14 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
     }
 
     fn words(state: &Self::State) -> usize {
-        let lags = state.y.len() + state.u.len() + state.e.len();
-        (2 * lags + 1 + state.line.capacity()) * T::WORDS + 2
+        state.as_ref().words()
     }
 
     fn save(state: &Self::State, writer: &mut Writer<'_>) {
-        writer.shape(state.y.len(), state.e.len(), state.line.capacity());
-        writer.lags(&state.y);
-        writer.lags(&state.u);
-        writer.lags(&state.e);
-        writer.number(state.reference);
-        writer.line(&state.line);
+        state.as_ref().save(writer);
     }
 
     fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
-        reader.shape(state.y.len(), state.e.len(), state.line.capacity())?;
-        reader.lags(&mut state.y)?;
-        reader.lags(&mut state.u)?;
-        reader.lags(&mut state.e)?;
-        state.reference = reader.number()?;
-        reader.line(&mut state.line)
+        state.view().restore(reader)
     }
 }

@@ -115,12 +115,12 @@ impl CompensatorConfig {
         let latency_ok = check.range(Param::Latency, self.latency, 0.0, longest);
         let total = self.model.dead_time + self.latency;
         // The number type with the coarser rounding decides.
-        let (whole, _) = super::discretise::whole_samples(total, ts, super::discretise::nearness::<f32>());
+        let (whole, _) = super::shape::whole_samples(total, ts, super::shape::nearness::<f32>());
         if dead_time_ok && latency_ok && whole >= capacity {
             check.fault(Param::DeadTime, Reason::TooLarge, total, 0.0, longest);
         }
         if check.is_clean() {
-            let least = super::discretise::least_order(&self.model, ts);
+            let least = super::shape::least_order(&self.model, ts);
             let most = least + super::MAX_EXCESS;
             if let Some(order) = self.order
                 && (order < least || order > most)

@@ -1,8 +1,9 @@
 //! The one step that every compensator runs, over slices, and the trait the controller sees.
 
-use crate::delay::{DelayLine, Memory};
+use super::view::LagsView;
 use crate::lag::Lag;
 use crate::real::Real;
+use crate::snapshot::{Reader, Writer};
 
 /// What a compensator gives in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -35,13 +36,6 @@ pub struct Coefficients<'a, T> {
     pub gain: T,
     /// Whole samples of delay in front of the `u` chain, behind the one that every sampled loop has.
     pub delay: usize,
-}
-
-/// The lags, borrowed.
-pub(super) struct LagsView<'a, T> {
-    pub(super) y: &'a mut [Lag<T>],
-    pub(super) u: &'a mut [Lag<T>],
-    pub(super) e: &'a mut [Lag<T>],
 }
 
 impl<T: Real> Coefficients<'_, T> {
@@ -182,13 +176,8 @@ pub trait Compensate<T: Real>: Sealed {
     fn words(state: &Self::State) -> usize;
 
     /// Writes the state.
-    fn save(state: &Self::State, writer: &mut crate::snapshot::Writer<'_>);
+    fn save(state: &Self::State, writer: &mut Writer<'_>);
 
     /// Reads a state back; `None` when a number is not finite or a place is outside the line.
-    fn restore(state: &mut Self::State, reader: &mut crate::snapshot::Reader<'_>) -> Option<()>;
-}
-
-/// What the line will deliver in the next sample, after `u` has been pushed.
-pub(super) fn next_tap<T: Real, M: Memory<T>>(line: &DelayLine<M>, delay: usize, u: T) -> T {
-    if delay == 0 { u } else { line.tap(delay - 1) }
+    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()>;
 }

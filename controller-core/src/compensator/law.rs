@@ -3,7 +3,8 @@
 use super::MAX_EXCESS;
 use super::config::{CompensatorConfig, EstimatorConfig, ObserverConfig};
 use super::discretise::{Discretised, discretise, shape};
-use super::kernel::{Coefficients, Compensate, CompensatorOutput, LagsView, Sealed, next_tap};
+use super::kernel::{Coefficients, Compensate, CompensatorOutput, Sealed};
+use super::view::{LagsView, StateRef, StateView};
 use crate::delay::DelayLine;
 use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::lag::Lag;
@@ -192,8 +193,16 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
 
 impl<T: Real, const N: usize, const E: usize, const R: usize> CompensatorState<T, N, E, R> {
     #[inline(always)]
-    fn lags(&mut self) -> LagsView<'_, T> {
-        LagsView { y: &mut self.y, u: &mut self.u, e: &mut self.e }
+    fn view(&mut self) -> StateView<'_, T, [T; R]> {
+        StateView {
+            lags: LagsView { y: &mut self.y, u: &mut self.u, e: &mut self.e },
+            line: &mut self.line,
+            reference: &mut self.reference,
+        }
+    }
+
+    fn as_ref(&self) -> StateRef<'_, T, [T; R]> {
+        StateRef { y: &self.y, u: &self.u, e: &self.e, line: &self.line, reference: self.reference }
     }
 }
 
@@ -204,34 +213,26 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
 
     #[inline(always)]
     fn sample(&self, state: &mut Self::State, y: T, u_applied: T) -> CompensatorOutput<T> {
-        state.line.push(u_applied);
-        let u = state.line.tap(self.delay);
-        let x = self.coefficients().advance(&mut state.lags(), y, u);
-        let d_hat = state.reference - x;
-        CompensatorOutput { u_f: -(self.gain * d_hat), d_hat }
+        state.view().sample(&self.coefficients(), y, u_applied)
     }
 
     fn settle(&self, state: &mut Self::State, y0: T, u0: T) {
-        state.line.fill(u0);
-        state.reference = self.coefficients().settle(&mut state.lags(), y0, u0);
+        state.view().settle(&self.coefficients(), y0, u0);
     }
 
     fn resettle(&self, state: &mut Self::State, y0: T) {
-        let u = state.line.tap(self.delay);
-        state.reference = self.coefficients().settle_y(&mut state.lags(), y0, u);
+        state.view().resettle(&self.coefficients(), y0);
     }
 
     fn skip(&self, state: &mut Self::State, u: T, n: usize) {
-        for _ in 0..n.min(R) {
-            state.line.push(u);
-        }
+        state.view().skip(u, n);
     }
 
     fn adopt(&self, old: &Self, state: &mut Self::State, y: T, u: T) -> T {
         let estimate = |law: &Self| {
             let mut copy = (state.y, state.u, state.e);
             let mut lags = LagsView { y: &mut copy.0, u: &mut copy.1, e: &mut copy.2 };
-            law.coefficients().advance(&mut lags, y, next_tap(&state.line, law.delay, u))
+            law.coefficients().advance(&mut lags, y, state.as_ref().next_tap(law.delay, u))
         };
         let (before, after) = (estimate(old), estimate(self));
         let d_hat = state.reference - before;
@@ -245,25 +246,15 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
         (gain * y, gain * u)
     }
 
-    fn words(_: &Self::State) -> usize {
-        (4 * N + 2 * E + 1 + R) * T::WORDS + 2
+    fn words(state: &Self::State) -> usize {
+        state.as_ref().words()
     }
 
     fn save(state: &Self::State, writer: &mut Writer<'_>) {
-        writer.shape(N, E, R);
-        writer.lags(&state.y);
-        writer.lags(&state.u);
-        writer.lags(&state.e);
-        writer.number(state.reference);
-        writer.line(&state.line);
+        state.as_ref().save(writer);
     }
 
     fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
-        reader.shape(N, E, R)?;
-        reader.lags(&mut state.y)?;
-        reader.lags(&mut state.u)?;
-        reader.lags(&mut state.e)?;
-        state.reference = reader.number()?;
-        reader.line(&mut state.line)
+        state.view().restore(reader)
     }
 }

@@ -27,6 +27,8 @@ pub(crate) mod kernel;
 mod law;
 mod matrix;
 mod none;
+mod shape;
+mod view;
 mod zoh;
 
 pub use any::{AnyCompensator, AnyCompensatorState};

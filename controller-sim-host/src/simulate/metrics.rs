@@ -3,13 +3,13 @@
 /// Indices over one stretch of time. `e = r - y` is the continuous error, except in `ie`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Metrics {
-    /// Integral of the error, `ts*sum(e[k])` over the samples [y*s]: the form for which the identities are exact.
+    /// Integral of the error, `ts*sum(e[k])` over the samples \[y*s\]: the form for which the identities are exact.
     pub ie: f64,
-    /// Integral of the absolute error [y*s].
+    /// Integral of the absolute error \[y*s\].
     pub iae: f64,
-    /// Integral of the squared error [y^2*s].
+    /// Integral of the squared error \[y^2*s\].
     pub ise: f64,
-    /// Integral of time times absolute error [y*s^2]; the clock starts with the stretch.
+    /// Integral of time times absolute error \[y*s^2\]; the clock starts with the stretch.
     pub itae: f64,
     /// Largest absolute error \[y\].
     pub e_max: f64,

@@ -1,0 +1,95 @@
+//! A compensator's state as slices: one body for the shapes known at compile time and those known at run time.
+
+use super::kernel::{Coefficients, CompensatorOutput};
+use crate::delay::{DelayLine, Memory};
+use crate::lag::Lag;
+use crate::real::Real;
+use crate::snapshot::{Reader, Writer};
+
+/// The lags, borrowed.
+pub(super) struct LagsView<'a, T> {
+    pub(super) y: &'a mut [Lag<T>],
+    pub(super) u: &'a mut [Lag<T>],
+    pub(super) e: &'a mut [Lag<T>],
+}
+
+/// A whole state, borrowed: the same for compile-time and run-time shapes.
+pub(super) struct StateView<'a, T, M> {
+    pub(super) lags: LagsView<'a, T>,
+    pub(super) line: &'a mut DelayLine<M>,
+    pub(super) reference: &'a mut T,
+}
+
+impl<T: Real, M: Memory<T>> StateView<'_, T, M> {
+    /// One sample, see [`super::Compensate::sample`].
+    #[inline(always)]
+    pub(super) fn sample(mut self, law: &Coefficients<'_, T>, y: T, u_applied: T) -> CompensatorOutput<T> {
+        self.line.push(u_applied);
+        let u = self.line.tap(law.delay);
+        let x = law.advance(&mut self.lags, y, u);
+        let d_hat = *self.reference - x;
+        CompensatorOutput { u_f: -(law.gain * d_hat), d_hat }
+    }
+
+    /// See [`super::Compensate::settle`].
+    pub(super) fn settle(mut self, law: &Coefficients<'_, T>, y0: T, u0: T) {
+        self.line.fill(u0);
+        *self.reference = law.settle(&mut self.lags, y0, u0);
+    }
+
+    /// See [`super::Compensate::resettle`].
+    pub(super) fn resettle(mut self, law: &Coefficients<'_, T>, y0: T) {
+        let u = self.line.tap(law.delay);
+        *self.reference = law.settle_y(&mut self.lags, y0, u);
+    }
+
+    /// See [`super::Compensate::skip`].
+    pub(super) fn skip(self, u: T, n: usize) {
+        for _ in 0..n.min(self.line.capacity()) {
+            self.line.push(u);
+        }
+    }
+
+    /// See [`super::Compensate::restore`].
+    pub(super) fn restore(self, reader: &mut Reader<'_>) -> Option<()> {
+        reader.shape(self.lags.y.len(), self.lags.e.len(), self.line.capacity())?;
+        reader.lags(self.lags.y)?;
+        reader.lags(self.lags.u)?;
+        reader.lags(self.lags.e)?;
+        *self.reference = reader.number()?;
+        reader.line(self.line)
+    }
+}
+
+/// A whole state, borrowed for reading.
+pub(super) struct StateRef<'a, T, M> {
+    pub(super) y: &'a [Lag<T>],
+    pub(super) u: &'a [Lag<T>],
+    pub(super) e: &'a [Lag<T>],
+    pub(super) line: &'a DelayLine<M>,
+    pub(super) reference: T,
+}
+
+impl<T: Real, M: Memory<T>> StateRef<'_, T, M> {
+    /// See [`super::Compensate::save`].
+    pub(super) fn save(&self, writer: &mut Writer<'_>) {
+        writer.shape(self.y.len(), self.e.len(), self.line.capacity());
+        writer.lags(self.y);
+        writer.lags(self.u);
+        writer.lags(self.e);
+        writer.number(self.reference);
+        writer.line(self.line);
+    }
+
+    /// See [`super::Compensate::words`].
+    pub(super) fn words(&self) -> usize {
+        let lags = self.y.len() + self.u.len() + self.e.len();
+        // The lags' two parts, the reference and the line; the shape and the line's place.
+        (2 * lags + 1 + self.line.capacity()) * T::WORDS + 2
+    }
+
+    /// What the line will deliver in the next sample, after `u` has been pushed.
+    pub(super) fn next_tap(&self, delay: usize, u: T) -> T {
+        if delay == 0 { u } else { self.line.tap(delay - 1) }
+    }
+}
