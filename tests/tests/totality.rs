@@ -7,70 +7,37 @@
 //!
 //! The same cases on every run; with `SOAK=1` in the environment a hundred times as many, different on every run.
 
+#[path = "totality/built.rs"]
+mod built;
 #[path = "totality/configs.rs"]
 mod configs;
 #[path = "totality/draw.rs"]
 mod draw;
 #[path = "totality/driven.rs"]
 mod driven;
+#[path = "totality/pinned.rs"]
+mod pinned;
 #[path = "totality/recovery.rs"]
 mod recovery;
+#[path = "totality/runner.rs"]
+mod runner;
+#[path = "totality/snapshots.rs"]
+mod snapshots;
 
-use configs::{CONFIG_BYTES, Case};
+use built::{AnyBlock, Block, Built};
+use configs::Case;
 use controller_core::{NoCompensator, Real};
-use driven::{AnyBlock, Block, Built, Checked, OPERATION_BYTES, drive};
+use driven::drive;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
-use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
 use recovery::{LOOP_BYTES, recovers};
-
-/// A runner for a bounded number of cases, or for many when soaking.
-fn runner(cases: u32) -> TestRunner {
-    let soak = std::env::var_os("SOAK").is_some();
-    let config = ProptestConfig {
-        cases: if soak { 100 * cases } else { cases },
-        failure_persistence: None,
-        max_shrink_iters: 20_000,
-        ..ProptestConfig::default()
-    };
-    if soak {
-        TestRunner::new(config)
-    } else {
-        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
-    }
-}
-
-fn config_bytes() -> impl Strategy<Value = Vec<u8>> {
-    vec(any::<u8>(), CONFIG_BYTES)
-}
-
-fn operations() -> impl Strategy<Value = Vec<Vec<u8>>> {
-    vec(vec(any::<u8>(), OPERATION_BYTES), 0..60)
-}
-
-/// The configurations of one run: three, mostly with one sampling period.
-fn cases(bytes: &[Vec<u8>]) -> Vec<Case> {
-    let mut cases: Vec<Case> = Vec::new();
-    for bytes in bytes {
-        let ts = cases.first().map(|case| case.ts);
-        cases.push(Case::draw(bytes, ts));
-    }
-    cases
-}
-
-/// Runs a check on `number` random values.
-fn for_all<S: Strategy>(number: u32, strategy: &S, check: impl Fn(S::Value) -> Checked) {
-    match runner(number).run(strategy, |value| check(value).map_err(TestCaseError::fail)) {
-        Ok(()) => {}
-        // The value is bytes; what they mean stands in the reason.
-        Err(TestError::Abort(reason) | TestError::Fail(reason, _)) => panic!("{reason}"),
-    }
-}
+use runner::{config_bytes, for_all, operations, runner, swappable};
+use snapshots::overwrite;
 
 fn total<T: Real, C: Block<T>>(number: u32) {
     for_all(number, &(vec(config_bytes(), 1..=3), operations()), |(bytes, operations)| {
-        drive::<T, C>(&cases(&bytes), &operations)
+        drive::<T, C>(&swappable(&bytes), &operations)
     });
 }
 
@@ -104,6 +71,20 @@ fn single_precision_loops_with_any_compensator() {
 #[test]
 fn double_precision_loops_with_any_compensator() {
     total::<f64, AnyBlock<f64>>(3000);
+}
+
+fn intact<T: Real, C: Block<T>>() {
+    for_all(3000, &(config_bytes(), vec(any::<u8>(), 128)), |(config, bytes)| {
+        Built::<T, C>::new(&Case::draw(&config, None)).map_or(Ok(()), |built| overwrite(&built, &bytes))
+    });
+}
+
+#[test]
+fn intact_snapshots_of_anything_are_refused_or_harmless() {
+    intact::<f32, NoCompensator>();
+    intact::<f64, NoCompensator>();
+    intact::<f32, AnyBlock<f32>>();
+    intact::<f64, AnyBlock<f64>>();
 }
 
 /// A test of what is refused would show nothing: most configurations are loops that can be built.

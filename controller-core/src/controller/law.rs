@@ -16,8 +16,8 @@ use crate::setpoint::Setpoint;
 /// samples, alarms, in the order of the [module](crate::controller).
 ///
 /// A step is total: for every bit pattern of every input the output is finite and in its range, the state finite.
-/// Cost: the sum of its blocks plus about 120 instructions; the first step of a zeroed state also fills the delay
-/// line. It does not depend on the data beyond the branches of the modes.
+/// Cost: its blocks plus about 40 compares and selects; no loop but those of the compensator's fixed order, so that the
+/// bound depends on the law alone. The first good sample of a zeroed state also fills the delay line.
 ///
 /// ```
 /// use controller_core::{Controller, ControllerConfig, ControllerInput, LimitConfig, PidConfig};

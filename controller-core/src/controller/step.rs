@@ -101,6 +101,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     ///
     /// Entering from another mode, the integral term is set so that the output begins where that mode would have put
     /// it; between Auto and Cascade, where the old set-point would have put it.
+    #[inline(always)]
     fn close(
         &self,
         state: &mut ControllerState<T, C::State>,
@@ -123,6 +124,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     }
 
     /// PID + offset + compensator; with `begin`, the integral term is set so that the sum is `begin`.
+    #[inline(always)]
     fn automatic(
         &self,
         state: &mut ControllerState<T, C::State>,
@@ -290,6 +292,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         self.output(state, CompensatorOutput::default(), status | Status::UNINITIALISED)
     }
 
+    #[inline(always)]
     fn output(
         &self,
         state: &ControllerState<T, C::State>,

@@ -1,18 +1,12 @@
 //! A loop that is driven by bytes: samples with any input, lost samples, swaps, settling, saving and restoring, each
 //! followed by the checks of what must always hold.
 
-use super::configs::{CAPACITY, Case};
+use super::built::{Block, Built, Checked, accepted, saved};
+use super::configs::Case;
 use super::draw::Draw;
 use controller_core::{
-    AnyCompensator, Compensate, Compensator, CompensatorState, ConfigErrors, Controller, ControllerInput,
-    ControllerOutput, ControllerState, FallbackReturn, Mode, NoCompensator, Quality, Real, Status,
+    ControllerInput, ControllerOutput, ControllerState, FallbackReturn, Mode, Quality, Real, Status,
 };
-
-/// Bytes that one operation reads at most.
-pub(crate) const OPERATION_BYTES: usize = 80;
-
-/// What a check found; text, because a panic would be printed for every case that a shrinking run tries.
-pub(crate) type Checked<V = ()> = Result<V, String>;
 
 macro_rules! ensure {
     ($holds:expr, $($message:tt)+) => {
@@ -22,85 +16,7 @@ macro_rules! ensure {
     };
 }
 
-/// A compensator that can be built from a case.
-pub(crate) trait Block<T: Real>: Compensate<T> + Clone {
-    fn build(case: &Case) -> Result<Self, ConfigErrors>;
-    /// A zeroed state; for shapes known at run time with all the memory there may be.
-    fn blank(&self) -> Self::State;
-}
-
-impl<T: Real> Block<T> for NoCompensator {
-    fn build(_: &Case) -> Result<Self, ConfigErrors> {
-        Ok(Self)
-    }
-    fn blank(&self) {}
-}
-
-/// A compensator of any shape.
-pub(crate) type AnyBlock<T> = AnyCompensator<T, Vec<T>>;
-
-impl<T: Real> Block<T> for AnyBlock<T> {
-    fn build(case: &Case) -> Result<Self, ConfigErrors> {
-        Self::new(&case.block, case.ts, CAPACITY)
-    }
-    fn blank(&self) -> Self::State {
-        self.state(vec![T::ZERO; CAPACITY]).expect("validated for this capacity")
-    }
-}
-
-impl<T: Real, const N: usize, const E: usize> Block<T> for Compensator<T, N, E, CAPACITY> {
-    fn build(case: &Case) -> Result<Self, ConfigErrors> {
-        Self::new(&case.block, case.ts)
-    }
-    fn blank(&self) -> CompensatorState<T, N, E, CAPACITY> {
-        CompensatorState::default()
-    }
-}
-
-/// A loop and what it was built from.
-#[derive(Clone)]
-pub(crate) struct Built<T, C> {
-    pub(crate) case: Case,
-    pub(crate) law: Controller<T, C>,
-}
-
 impl<T: Real, C: Block<T>> Built<T, C> {
-    /// Builds the loop of a case, unless it is refused.
-    pub(crate) fn new(case: &Case) -> Result<Self, ConfigErrors> {
-        let law = Controller::with_compensator(&case.config, C::build(case)?, case.ts)?;
-        Ok(Self { case: case.clone(), law })
-    }
-
-    /// The range of the measurement as the loop sees it.
-    fn measurement(&self) -> (T, T) {
-        (T::from_f64(self.case.config.measurement_lo), T::from_f64(self.case.config.measurement_hi))
-    }
-
-    /// Any input.
-    pub(crate) fn input(&self, draw: &mut Draw<'_>) -> ControllerInput<T> {
-        let (y_lo, y_hi) = self.measurement();
-        let (u_lo, u_hi) = self.law.output_range();
-        let config = &self.case.config;
-        let (r_lo, r_hi) = (T::from_f64(config.setpoint.lo), T::from_f64(config.setpoint.hi));
-        let flags = draw.byte();
-        let flag = |i: u8| flags >> i & 1 == 1;
-        ControllerInput {
-            y: draw.signal(y_lo, y_hi),
-            quality: draw.pick(&[Quality::Good, Quality::Good, Quality::Uncertain, Quality::Bad]),
-            mode: Mode::from_number((draw.byte() % 7 + 2) % 7).expect("a number of a mode"),
-            r: draw.signal(r_lo, r_hi),
-            u_applied: flag(0).then(|| draw.signal(u_lo, u_hi)),
-            offset: draw.signal(T::from_f64(config.offset_lo), T::from_f64(config.offset_hi)),
-            manual: flag(1).then(|| draw.signal(u_lo, u_hi)),
-            track: draw.signal(u_lo, u_hi),
-            r_remote: draw.signal(r_lo, r_hi),
-            compensate: !flag(2),
-            inhibit_up: flag(3),
-            inhibit_down: flag(4),
-            acknowledge: flag(5),
-        }
-    }
-
     /// An input that nothing is wrong with: everything in the middle of its range, acknowledged.
     pub(crate) fn good(&self) -> ControllerInput<T> {
         let middle = |lo: f64, hi: f64| T::from_f64(0.5 * lo + 0.5 * hi);
@@ -113,17 +29,6 @@ impl<T: Real, C: Block<T>> Built<T, C> {
             ..ControllerInput::default()
         }
     }
-}
-
-/// The words of a state.
-pub(crate) fn saved<T: Real, C: Block<T>>(
-    law: &Controller<T, C>,
-    state: &ControllerState<T, C::State>,
-) -> Vec<u32> {
-    let mut words = vec![0; Controller::<T, C>::snapshot_words(state)];
-    let used = law.save(state, &mut words).expect("room for all words");
-    assert_eq!(used, words.len());
-    words
 }
 
 /// What the documentation says of bad samples in a row.
@@ -252,7 +157,7 @@ impl<'a, T: Real, C: Block<T>> Driven<'a, T, C> {
         }
     }
 
-    fn swap(&mut self, to: usize) -> Checked {
+    pub(crate) fn swap(&mut self, to: usize) -> Checked {
         let u = self.state.u();
         self.laws[to].law.adopt(&self.laws[self.now].law, &mut self.state);
         ensure!(self.state.u().to_words() == u.to_words(), "a swap moved the output from {u:?}");
@@ -315,11 +220,6 @@ impl<'a, T: Real, C: Block<T>> Driven<'a, T, C> {
         }
         Ok(())
     }
-}
-
-/// Builds what can be built.
-pub(crate) fn accepted<T: Real, C: Block<T>>(cases: &[Case]) -> Vec<Built<T, C>> {
-    cases.iter().filter_map(|case| Built::new(case).ok()).collect()
 }
 
 /// Everything at once: the loops of all accepted cases, all operations, recovery.

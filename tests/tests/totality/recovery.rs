@@ -1,8 +1,9 @@
 //! Ordinary loops, tuned for the plant they control: they forget what was done to them.
 
+use super::built::{AnyBlock, Built, Checked};
 use super::configs::{CAPACITY, Case};
 use super::draw::Draw;
-use super::driven::{AnyBlock, Built, Checked, Driven};
+use super::driven::Driven;
 use controller_core::plant_model::PlantModel;
 use controller_core::{
     Action, AntiWindupConfig, CompensatorConfig, ControllerConfig, ControllerInput, EstimatorConfig,
