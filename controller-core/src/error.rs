@@ -220,6 +220,14 @@ impl ConfigErrors {
     }
 }
 
+impl From<ConfigError> for ConfigErrors {
+    fn from(fault: ConfigError) -> Self {
+        let mut errors = Self::default();
+        let _ = errors.faults.push(fault);
+        errors
+    }
+}
+
 impl core::ops::Deref for ConfigErrors {
     type Target = [ConfigError];
     fn deref(&self) -> &[ConfigError] {

@@ -152,6 +152,9 @@ pub trait Compensate<T: Real>: Sealed {
     /// The block's state.
     type State: Clone;
 
+    /// Whether there is anything to use.
+    const PRESENT: bool = true;
+
     /// Takes one sample: pushes the applied output `u_applied = u[k-1]` into the delay line, reads `y[k]`.
     fn sample(&self, state: &mut Self::State, y: T, u_applied: T) -> CompensatorOutput<T>;
 

@@ -17,6 +17,7 @@ impl Sealed for NoCompensator {}
 
 impl<T: Real> Compensate<T> for NoCompensator {
     type State = ();
+    const PRESENT: bool = false;
 
     #[inline(always)]
     fn sample(&self, _: &mut (), _: T, _: T) -> CompensatorOutput<T> {

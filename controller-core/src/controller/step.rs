@@ -56,7 +56,6 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             estimate = CompensatorOutput::default();
         }
         let u_f = self.use_compensator(state, input.compensate, estimate.u_f);
-        status |= Status::COMPENSATING.when(input.compensate);
 
         // 4-6. The mode decides who gives the output; range and rate hold in all of them.
         let was = state.mode;
@@ -89,7 +88,8 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         if usable {
             state.alarms = self.alarms.check(state.alarms, state.r, y);
         }
-        status |= Status::LIMITED_HIGH.when(limited.high)
+        status |= Status::COMPENSATING.when(C::PRESENT && input.compensate && mode.is_automatic())
+            | Status::LIMITED_HIGH.when(limited.high)
             | Status::LIMITED_LOW.when(limited.low)
             | Status::RATE_LIMITED.when(limited.rate)
             | Status::SETPOINT_RAMPING.when(state.r != state.r_asked)

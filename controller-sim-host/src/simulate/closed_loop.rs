@@ -1,12 +1,10 @@
 //! The plant side of a sampled loop: held output, latency, dead time, disturbance, exactly between the samples.
 
+use super::disturbance::{Curve, SAME};
 use crate::plant::{Input, LinearPlant, StateSpace};
 use crate::scenario::Disturbance;
 use controller_design::model::TransferFunction;
 use std::collections::VecDeque;
-
-/// How near two instants count as one, in samples: decimal numbers must not make steps of length 1e-16.
-const SAME: f64 = 1e-9;
 
 /// The plant's output over a step between samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,14 +17,6 @@ pub struct SubStep {
     pub t1: f64,
     /// Output at the end \[y\].
     pub y1: f64,
-}
-
-/// A piece of the disturbance: from `at` (in samples, dead time included) on, `value` rising by `slope` per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
-    at: f64,
-    value: f64,
-    slope: f64,
 }
 
 /// One step of the grid inside a sample: begins at `start` (a fraction of the sample), lasts `h` seconds.
@@ -47,8 +37,7 @@ pub struct ClosedLoop {
     ts: f64,
     grid: Vec<Grid>,
     line: VecDeque<f64>,
-    disturbance: Vec<Piece>,
-    piece: usize,
+    disturbance: Curve,
     sample: u64,
     w_before: f64,
 }
@@ -73,14 +62,13 @@ impl ClosedLoop {
         let u0 = w0 - d0;
         // Newest first; one more than the delay for the part of a sample before the new output arrives.
         let line = VecDeque::from(vec![u0; whole as usize + 2]);
-        let disturbance = pieces(d0, disturbances, plant.dead_time(), ts);
+        let disturbance = Curve::new(d0, disturbances, plant.dead_time(), ts);
         let this = Self {
             plant: LinearPlant::new(system, x),
             ts,
             grid: grid(ts, substeps.max(1), fraction),
             line,
             disturbance,
-            piece: 0,
             sample: 0,
             w_before: w0,
         };
@@ -112,8 +100,8 @@ impl ClosedLoop {
             let mut start = step.start;
             let mut left = step.h;
             // A piece of the disturbance that begins inside the step divides it.
-            while let Some(next) = self.disturbance.get(self.piece + 1).copied() {
-                let at = next.at - k;
+            while let Some(next) = self.disturbance.next() {
+                let at = next - k;
                 let until = (at - start) * self.ts;
                 if until > left - SAME * self.ts {
                     break;
@@ -123,7 +111,7 @@ impl ClosedLoop {
                     start = at;
                     left -= until;
                 }
-                self.piece += 1;
+                self.disturbance.enter_next();
             }
             self.advance(k, start, left, output, &mut each);
         }
@@ -131,19 +119,13 @@ impl ClosedLoop {
     }
 
     fn advance(&mut self, k: f64, start: f64, h: f64, output: f64, each: &mut impl FnMut(SubStep)) {
-        let (d, slope) = self.disturbance_at(k + start);
+        let (d, slope) = self.disturbance.now(k + start);
         let w = output + d;
         let y0 = self.plant.output(w);
         self.plant.advance(h, Input { value: w, slope });
         self.w_before = w + slope * h;
         let t0 = (k + start) * self.ts;
         each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
-    }
-
-    fn disturbance_at(&self, s: f64) -> (f64, f64) {
-        let piece = self.disturbance[self.piece];
-        let passed = if piece.slope == 0.0 { 0.0 } else { (s - piece.at) * self.ts };
-        (piece.value + piece.slope * passed, piece.slope)
     }
 }
 
@@ -162,52 +144,4 @@ fn grid(ts: f64, substeps: usize, fraction: f64) -> Vec<Grid> {
         }
     }
     steps
-}
-
-/// The disturbance as pieces at the plant's input, the dead time already added.
-fn pieces(d0: f64, list: &[(f64, Disturbance)], dead_time: f64, ts: f64) -> Vec<Piece> {
-    // Every disturbance as changes of level and slope at instants.
-    let mut steps: Vec<(f64, f64, f64)> = Vec::new();
-    let mut level = d0;
-    for &(at, disturbance) in list {
-        match disturbance {
-            Disturbance::Step(value) => {
-                steps.push((at, value - level, 0.0));
-                level = value;
-            }
-            Disturbance::Ramp { slope, duration } => {
-                steps.push((at, 0.0, slope));
-                if duration.is_finite() {
-                    steps.push((at + duration, 0.0, -slope));
-                }
-            }
-            Disturbance::Pulse { height, duration } => {
-                steps.push((at, height, 0.0));
-                steps.push((at + duration, -height, 0.0));
-            }
-        }
-    }
-    steps.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut list = vec![Piece { at: f64::NEG_INFINITY, value: d0, slope: 0.0 }];
-    for (at, rise, bend) in steps {
-        let s = (at + dead_time) / ts;
-        let at = if (s - s.round()).abs() < SAME { s.round() } else { s };
-        let last = list[list.len() - 1];
-        let passed = if last.slope == 0.0 { 0.0 } else { (at - last.at) * ts };
-        let next = Piece { at, value: last.value + last.slope * passed + rise, slope: last.slope + bend };
-        if last.at == at {
-            list.pop();
-        }
-        list.push(next);
-    }
-    list
-}
-
-/// The disturbance itself (without the dead time) at the time `t` \[s\], for traces.
-#[must_use]
-pub(super) fn level_at(d0: f64, list: &[(f64, Disturbance)], t: f64, ts: f64) -> f64 {
-    let s = t / ts;
-    let pieces = pieces(d0, list, 0.0, ts);
-    let piece = pieces.iter().rev().find(|piece| piece.at <= s + SAME).copied();
-    piece.map_or(d0, |p| p.value + if p.slope == 0.0 { 0.0 } else { p.slope * (s - p.at) * ts })
 }

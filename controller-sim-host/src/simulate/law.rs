@@ -2,8 +2,8 @@
 
 use crate::scenario::{CompensatorSpec, ControllerSpec};
 use controller_core::{
-    AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigErrors, Controller, ControllerInput,
-    ControllerOutput, ControllerState, NoCompensator, Real,
+    AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigError, ConfigErrors, Controller,
+    ControllerInput, ControllerOutput, ControllerState, NoCompensator, Param, Real, Reason,
 };
 
 type Compensated<T> = AnyCompensator<T, Vec<T>>;
@@ -122,8 +122,17 @@ impl<T: Real> AnyLaw<T> {
                 new.adopt(law, state);
                 *law = new;
             }
-            // The reader of scenarios refuses this; a caller of the library sees that nothing changed.
-            _ => {}
+            // A state with a compensator cannot become one without, or the other way round.
+            _ => {
+                let kind = ConfigError {
+                    param: Param::FilterOrder,
+                    reason: Reason::Mismatch,
+                    value: 0.0,
+                    min: 0.0,
+                    max: 0.0,
+                };
+                return Err(kind.into());
+            }
         }
         Ok(())
     }

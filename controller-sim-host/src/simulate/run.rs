@@ -1,11 +1,14 @@
 //! A run: every controller of a scenario, sample by sample.
 
-use super::closed_loop::{ClosedLoop, level_at};
+use super::closed_loop::ClosedLoop;
+use super::disturbance::Curve;
 use super::law::AnyLaw;
 use super::metrics::Metrics;
 use super::noise::Gaussian;
+use super::remarks::{Remark, Watch};
+use super::stretches::{Stretch, Stretches, sample_of};
 use crate::scenario::{Change, ControllerSpec, Disturbance, Scenario};
-use controller_core::{ConfigErrors, ControllerInput, Mode, Quality, Real, Status};
+use controller_core::{ConfigErrors, ControllerInput, ControllerOutput, Mode, Quality, Real, Status};
 
 /// The number type the controllers run in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,38 +29,14 @@ pub struct RunOptions {
     pub trace: bool,
 }
 
-/// What began a stretch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EventKind {
-    /// The run itself, when no event is at `t = 0`.
-    Start,
-    /// A set-point change.
-    Setpoint,
-    /// A disturbance.
-    Disturbance,
-    /// Anything else, or more than one kind at once.
-    Other,
-}
-
-/// The time from one event to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
-    /// When it began \[s\].
-    pub at: f64,
-    /// What began it.
-    pub kind: EventKind,
-    /// Its indices.
-    pub metrics: Metrics,
-}
-
 /// One sample of one controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Time \[s\].
     pub t: f64,
-    /// Set-point as asked for \[y\].
+    /// Set-point as asked for: the local one, in Cascade the remote one \[y\].
     pub r: f64,
-    /// Measurement, noise included; what the controller got (not a number while bad) \[y\].
+    /// Measurement, noise included; what the controller got (not a number while bad or lost) \[y\].
     pub y: f64,
     /// Controller output \[u\].
     pub u: f64,
@@ -84,6 +63,8 @@ pub struct ControllerResult {
     pub total: Metrics,
     /// Every sample, when asked for.
     pub trace: Vec<Sample>,
+    /// What to know before trusting the figures: fallbacks, saturation, an error that does not die out.
+    pub remarks: Vec<Remark>,
 }
 
 /// The result of a run, controllers in the order of the scenario.
@@ -140,8 +121,18 @@ pub fn run(scenario: &Scenario, options: RunOptions) -> Result<RunResult, RunErr
 /// What the events have made of the controller's inputs.
 struct Requests<T> {
     input: ControllerInput<T>,
+    r: f64,
+    r_remote: f64,
+    /// Bad and lost samples still to come.
     bad: u32,
     lost: u32,
+}
+
+impl<T> Requests<T> {
+    /// The set-point that the requested mode uses, unrounded.
+    fn asked(&self) -> f64 {
+        if self.input.mode == Mode::Cascade { self.r_remote } else { self.r }
+    }
 }
 
 fn run_one<T: Real>(scenario: &Scenario, index: usize, trace: bool) -> Result<ControllerResult, RunError> {
@@ -153,28 +144,27 @@ fn run_one<T: Real>(scenario: &Scenario, index: usize, trace: bool) -> Result<Co
     let (mut plant, u0) =
         ClosedLoop::new(&scenario.plant, ts, scenario.latency, scenario.substeps, rest, &disturbances)
             .ok_or(RunError::NoRest { setpoint: initial.setpoint })?;
-    let capacity = capacity(scenario, index);
-    let mut law = AnyLaw::<T>::new(spec, ts, scenario.latency, capacity).map_err(refused)?;
+    let mut disturbance = Curve::new(initial.disturbance, &disturbances, 0.0, ts);
+    let mut law = AnyLaw::<T>::new(spec, ts, scenario.latency, capacity(scenario, index)).map_err(refused)?;
     law.settle(initial.setpoint, initial.setpoint, u0);
 
+    let r0 = T::from_f64(initial.setpoint);
     let mut requests = Requests {
-        input: ControllerInput {
-            r: T::from_f64(initial.setpoint),
-            r_remote: T::from_f64(initial.setpoint),
-            mode: spec.mode,
-            ..ControllerInput::default()
-        },
+        input: ControllerInput { r: r0, r_remote: r0, mode: spec.mode, ..ControllerInput::default() },
+        r: initial.setpoint,
+        r_remote: initial.setpoint,
         bad: 0,
         lost: 0,
     };
     let mut noise = scenario.noise.map(|n| (n.std, Gaussian::new(n.seed)));
-    let mut stretches = Stretches::new(scenario, index);
+    let mut stretches = Stretches::new(scenario);
+    let mut watch = Watch::default();
     let mut samples = Vec::new();
     let mut next_event = 0;
-    let (mut u, mut output) = (u0, None);
+    let count = sample_of(scenario.duration, ts);
+    let (mut u, mut output) = (u0, ControllerOutput { mode: spec.mode, ..ControllerOutput::default() });
 
-    for k in 0..sample_count(scenario.duration, ts) {
-        requests.input.acknowledge = false;
+    for k in 0..count {
         while let Some(event) = scenario.events.get(next_event).filter(|e| sample_of(e.at, ts) <= k) {
             next_event += 1;
             if event.controller.is_none_or(|only| only == index) {
@@ -183,48 +173,42 @@ fn run_one<T: Real>(scenario: &Scenario, index: usize, trace: bool) -> Result<Co
                 }
             }
         }
-        let t = plant.time();
-        stretches.enter(k);
-
+        let (t, r) = (plant.time(), requests.asked());
         let exact = plant.measure();
-        let error_now = requests.input.r.to_f64() - exact;
         let noisy = exact + noise.as_mut().map_or(0.0, |(std, source)| *std * source.sample());
         let before = u;
-        if requests.lost > 0 {
+        let lost = requests.lost > 0;
+        let y = if lost || requests.bad > 0 { f64::NAN } else { noisy };
+        if lost {
             // The task does not run; the output stays.
             requests.lost -= 1;
             law.advance(1);
         } else {
-            requests.input.y = T::from_f64(if requests.bad > 0 { f64::NAN } else { noisy });
+            requests.input.y = T::from_f64(y);
             requests.input.quality = if requests.bad > 0 { Quality::Bad } else { Quality::Good };
             requests.bad = requests.bad.saturating_sub(1);
-            let out = law.step(&requests.input);
-            u = out.u.to_f64();
-            output = Some(out);
+            output = law.step(&requests.input);
+            requests.input.acknowledge = false;
+            u = output.u.to_f64();
         }
         let applied = u.clamp(scenario.actuator.lo, scenario.actuator.hi);
         if scenario.actuator.read_back {
             requests.input.u_applied = Some(T::from_f64(applied));
         }
-        stretches.sample(ts, error_now, before, u);
-        if let (true, Some(out)) = (trace, output) {
-            samples.push(Sample {
-                t,
-                r: requests.input.r.to_f64(),
-                y: requests.input.y.to_f64(),
-                u,
-                u_f: out.u_f.to_f64(),
-                d_hat: out.d_hat.to_f64(),
-                d: level_at(initial.disturbance, &disturbances, t, ts),
-                mode: out.mode,
-                status: out.status,
-            });
+        stretches.sample(t, ts, r - exact, before, u);
+        let automatic = output.mode.is_automatic();
+        watch.sample(t, k as f64 / count as f64, r - exact, output.status, automatic);
+        if trace {
+            let d = disturbance.advance_to(k as f64);
+            let (u_f, d_hat) = (output.u_f.to_f64(), output.d_hat.to_f64());
+            let status = if lost { output.status | Status::OVERRUN } else { output.status };
+            samples.push(Sample { t, r, y, u, u_f, d_hat, d, mode: output.mode, status });
         }
-        let r = requests.input.r.to_f64();
-        plant.hold(applied, |step| stretches.step(step.t0, r - step.y0, step.t1, r - step.y1));
+        plant.hold(applied, |step| stretches.step((step.t0, r - step.y0), (step.t1, r - step.y1)));
     }
     let (events, total) = stretches.finish();
-    Ok(ControllerResult { name: spec.name.clone(), events, total, trace: samples })
+    let remarks = watch.finish(scenario.noise.map_or(0.0, |n| n.std));
+    Ok(ControllerResult { name: spec.name.clone(), events, total, trace: samples, remarks })
 }
 
 fn apply<T: Real>(
@@ -235,8 +219,8 @@ fn apply<T: Real>(
 ) -> Result<(), ConfigErrors> {
     let input = &mut requests.input;
     match change {
-        Change::Setpoint(r) => input.r = T::from_f64(*r),
-        Change::RemoteSetpoint(r) => input.r_remote = T::from_f64(*r),
+        Change::Setpoint(r) => (requests.r, input.r) = (*r, T::from_f64(*r)),
+        Change::RemoteSetpoint(r) => (requests.r_remote, input.r_remote) = (*r, T::from_f64(*r)),
         Change::Disturbance(_) => {}
         Change::Mode(mode) => input.mode = *mode,
         Change::Manual(u) => input.manual = Some(T::from_f64(*u)),
@@ -270,82 +254,4 @@ fn capacity(scenario: &Scenario, index: usize) -> usize {
     });
     let need = |spec: &ControllerSpec| spec.needed_capacity(scenario.ts, scenario.latency);
     later.chain(scenario.controllers.get(index)).map(need).max().unwrap_or(1)
-}
-
-/// The first sample at or after the time `at`.
-fn sample_of(at: f64, ts: f64) -> u64 {
-    let s = at / ts;
-    let near = s.round();
-    (if (s - near).abs() < 1e-9 * (1.0 + near.abs()) { near } else { s.ceil() }) as u64
-}
-
-/// Samples in a run of `duration` seconds.
-fn sample_count(duration: f64, ts: f64) -> u64 {
-    sample_of(duration, ts)
-}
-
-/// Divides a run at its events and collects the indices of each stretch.
-struct Stretches {
-    list: Vec<(u64, Stretch)>,
-    current: usize,
-}
-
-impl Stretches {
-    fn new(scenario: &Scenario, index: usize) -> Self {
-        let mut list: Vec<(u64, Stretch)> = Vec::new();
-        let begin = |at: f64, kind| Stretch { at, kind, metrics: Metrics::default() };
-        for event in &scenario.events {
-            if event.controller.is_some_and(|only| only != index) {
-                continue;
-            }
-            let start = sample_of(event.at, scenario.ts);
-            for change in &event.changes {
-                let kind = match change {
-                    Change::Setpoint(_) | Change::RemoteSetpoint(_) => EventKind::Setpoint,
-                    Change::Disturbance(_) => EventKind::Disturbance,
-                    _ => EventKind::Other,
-                };
-                match list.last_mut() {
-                    Some((sample, last)) if *sample == start => {
-                        if last.kind != kind {
-                            last.kind = EventKind::Other;
-                        }
-                    }
-                    _ => list.push((start, begin(event.at, kind))),
-                }
-            }
-        }
-        if list.first().is_none_or(|(sample, _)| *sample > 0) {
-            list.insert(0, (0, begin(0.0, EventKind::Start)));
-        }
-        Self { list, current: 0 }
-    }
-
-    fn enter(&mut self, k: u64) {
-        while self.list.get(self.current + 1).is_some_and(|(start, _)| *start <= k) {
-            self.current += 1;
-        }
-    }
-
-    fn now(&mut self) -> &mut Stretch {
-        &mut self.list[self.current].1
-    }
-
-    fn sample(&mut self, ts: f64, e: f64, u_before: f64, u: f64) {
-        self.now().metrics.add_sample(ts, e, u_before, u);
-    }
-
-    fn step(&mut self, t0: f64, e0: f64, t1: f64, e1: f64) {
-        let stretch = self.now();
-        let at = stretch.at;
-        stretch.metrics.add_step((t0 - at, e0), (t1 - at, e1));
-    }
-
-    fn finish(self) -> (Vec<Stretch>, Metrics) {
-        // An event behind the last sample begins nothing.
-        let entered = self.list.into_iter().take(self.current + 1);
-        let list: Vec<Stretch> = entered.map(|(_, stretch)| stretch).collect();
-        let total = list.iter().fold(Metrics::default(), |sum, s| sum.plus(&s.metrics));
-        (list, total)
-    }
 }

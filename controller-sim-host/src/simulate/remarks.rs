@@ -1,0 +1,69 @@
+//! What a person should know of a run besides its figures.
+
+use controller_core::Status;
+
+/// A sentence about the run of one controller: that its figures are not those of a loop that works.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remark {
+    /// The sentence.
+    pub text: String,
+}
+
+/// Counts what remarks are made of.
+#[derive(Debug, Default)]
+pub(super) struct Watch {
+    samples: u64,
+    fallback: (u64, f64),
+    rejected: (u64, f64),
+    limited: u64,
+    /// Largest error in each tenth of the run.
+    tenths: [f64; 10],
+    automatic: bool,
+}
+
+impl Watch {
+    /// A sample at the time `t`, `done` of the run (0 to 1).
+    pub(super) fn sample(&mut self, t: f64, done: f64, e: f64, status: Status, automatic: bool) {
+        self.samples += 1;
+        let count = |(n, first): &mut (u64, f64), yes: bool| {
+            if yes {
+                *first = if *n == 0 { t } else { *first };
+                *n += 1;
+            }
+        };
+        count(&mut self.fallback, status.has(Status::FALLBACK));
+        count(&mut self.rejected, status.has(Status::REJECTED));
+        self.limited += u64::from(status.has(Status::LIMITED_HIGH) || status.has(Status::LIMITED_LOW));
+        self.automatic = automatic;
+        let tenth = ((done * 10.0) as usize).min(9);
+        self.tenths[tenth] = self.tenths[tenth].max(e.abs());
+    }
+
+    /// The remarks; `noise` is the standard deviation of the measurement noise \[y\].
+    pub(super) fn finish(&self, noise: f64) -> Vec<Remark> {
+        let mut list = Vec::new();
+        let mut say = |text: String| list.push(Remark { text });
+        let (n, first) = self.fallback;
+        if n > 0 {
+            say(format!("in fallback for {n} samples, from {first} s on: the measurement was bad"));
+        }
+        let (n, first) = self.rejected;
+        if n > 0 {
+            say(format!("{n} samples with an unusable input (not finite), from {first} s on"));
+        }
+        let share = 100.0 * self.limited as f64 / self.samples.max(1) as f64;
+        if share >= 25.0 {
+            say(format!("at an output limit for {share:.0} % of the run"));
+        }
+        let last = self.tenths[9];
+        let before = self.tenths[7].min(self.tenths[8]);
+        if self.automatic
+            && last > 0.9 * before
+            && last > 6.0 * noise
+            && last > 0.05 * self.tenths.iter().fold(0.0_f64, |a, b| a.max(*b))
+        {
+            say(format!("the error does not die out: still {last:.3} at the end"));
+        }
+        list
+    }
+}

@@ -1,0 +1,114 @@
+//! A run divided at its events.
+
+use super::metrics::Metrics;
+use crate::scenario::{Change, Scenario};
+
+/// What began a stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventKind {
+    /// The run itself, when no event is at `t = 0`.
+    Start,
+    /// A set-point change.
+    Setpoint,
+    /// A disturbance.
+    Disturbance,
+    /// Anything else, or more than one kind at once.
+    Other,
+}
+
+/// The time from one event to the next. All controllers of a run have the same stretches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// When it began \[s\].
+    pub at: f64,
+    /// What began it.
+    pub kind: EventKind,
+    /// Its indices.
+    pub metrics: Metrics,
+}
+
+/// The first sample at or after the time `at`.
+#[must_use]
+pub fn sample_of(at: f64, ts: f64) -> u64 {
+    let s = at / ts;
+    let near = s.round();
+    (if (s - near).abs() < 1e-9 * (1.0 + near.abs()) { near } else { s.ceil() }) as u64
+}
+
+/// Collects the indices of each stretch of one controller.
+#[derive(Debug)]
+pub(super) struct Stretches {
+    /// When each takes effect \[s\]: a disturbance at its time, everything else with the next sample.
+    list: Vec<(f64, Stretch)>,
+    current: usize,
+}
+
+impl Stretches {
+    /// The stretches of `scenario`, cut at the events of all its controllers, so that a table compares equal windows.
+    pub(super) fn new(scenario: &Scenario) -> Self {
+        let mut list: Vec<(f64, Stretch)> = Vec::new();
+        let begin = |at: f64, kind| Stretch { at, kind, metrics: Metrics::default() };
+        for event in &scenario.events {
+            let next_sample = sample_of(event.at, scenario.ts) as f64 * scenario.ts;
+            for change in &event.changes {
+                let (kind, start) = match change {
+                    Change::Setpoint(_) | Change::RemoteSetpoint(_) => (EventKind::Setpoint, next_sample),
+                    Change::Disturbance(_) => (EventKind::Disturbance, event.at),
+                    _ => (EventKind::Other, next_sample),
+                };
+                match list.last_mut() {
+                    Some((begun, last)) if last.at == event.at => {
+                        *begun = begun.min(start);
+                        if last.kind != kind {
+                            last.kind = EventKind::Other;
+                        }
+                    }
+                    _ => list.push((start, begin(event.at, kind))),
+                }
+            }
+        }
+        if list.first().is_none_or(|(start, _)| *start > 0.0) {
+            list.insert(0, (0.0, begin(0.0, EventKind::Start)));
+        }
+        Self { list, current: 0 }
+    }
+
+    /// Goes to the stretch that holds at the time `t`.
+    fn enter(&mut self, t: f64) {
+        while self.list.get(self.current + 1).is_some_and(|(start, _)| *start <= t) {
+            self.current += 1;
+        }
+    }
+
+    /// A sample at the time `t`: error, output before and after.
+    pub(super) fn sample(&mut self, t: f64, ts: f64, e: f64, u_before: f64, u: f64) {
+        // Sums of periods are not exact; an event on the grid belongs to its sample.
+        self.enter(t + 1e-9 * ts);
+        self.list[self.current].1.metrics.add_sample(ts, e, u_before, u);
+    }
+
+    /// The error between two samples, divided where a stretch begins inside.
+    pub(super) fn step(&mut self, (mut t0, mut e0): (f64, f64), (t1, e1): (f64, f64)) {
+        while let Some(start) = self.list.get(self.current + 1).map(|(start, _)| *start).filter(|s| *s < t1) {
+            if start > t0 {
+                let e = e0 + (e1 - e0) * ((start - t0) / (t1 - t0));
+                self.add((t0, e0), (start, e));
+                (t0, e0) = (start, e);
+            }
+            self.current += 1;
+        }
+        self.add((t0, e0), (t1, e1));
+    }
+
+    fn add(&mut self, (t0, e0): (f64, f64), (t1, e1): (f64, f64)) {
+        let stretch = &mut self.list[self.current].1;
+        stretch.metrics.add_step((t0 - stretch.at, e0), (t1 - stretch.at, e1));
+    }
+
+    /// The stretches and the indices of the whole run.
+    pub(super) fn finish(self) -> (Vec<Stretch>, Metrics) {
+        let list: Vec<Stretch> = self.list.into_iter().map(|(_, stretch)| stretch).collect();
+        let total = list.iter().fold(Metrics::default(), |sum, s| sum.plus(&s.metrics));
+        (list, total)
+    }
+}
