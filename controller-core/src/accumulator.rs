@@ -51,6 +51,22 @@ impl<T: Real> Accumulator<T> {
         self.carry = T::ZERO;
     }
 
+    /// Goes to `target`, but by no more than `up` or `down`; returns whether that held it back. A step far below a unit in
+    /// the last place still adds up: a ramp does not stall.
+    #[inline(always)]
+    pub fn approach(&mut self, target: T, down: T, up: T) -> bool {
+        let way = target - self.sum;
+        if way > up {
+            self.add(up);
+        } else if way < -down {
+            self.add(-down);
+        } else {
+            self.set(target);
+            return false;
+        }
+        true
+    }
+
     /// The sum, rounded to `T`.
     #[must_use]
     #[inline(always)]

@@ -3,9 +3,9 @@
 use core::fmt;
 use heapless::Vec;
 
-/// How many faults one [`ConfigErrors`] can hold (32 bytes each, on the stack of the caller of `new`); those beyond are
-/// left out and show up once the first ones are mended.
-pub const MAX_FAULTS: usize = 16;
+/// How many faults one [`ConfigErrors`] can hold: more than there are parameters. 32 bytes each, on the stack of the
+/// caller of `new`.
+pub const MAX_FAULTS: usize = 48;
 
 macro_rules! params {
     ($($(#[$doc:meta])* $name:ident = $number:literal, $text:literal;)*) => {

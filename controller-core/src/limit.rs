@@ -1,5 +1,6 @@
 //! Output limits: range and rate.
 
+use crate::accumulator::Accumulator;
 use crate::error::{Checker, ConfigErrors, Param};
 use crate::real::{Real, coefficient};
 
@@ -45,19 +46,22 @@ impl LimitConfig {
     }
 }
 
-/// A limiter for range and rate.
+/// A limiter for range and rate. Its state is the last output, a compensated sum, so that a rate far below one unit in
+/// the last place per sample still moves.
 ///
 /// Law: `u[k] = clamp(clamp(v[k], u[k-1] - ts*rate_down, u[k-1] + ts*rate_up), lo, hi)`: the range beats the rate,
 /// so that a range that moves inwards holds at once.
-/// Cost: 4 compares, 2 additions. Total: any `v`, NaN included, gives an output in the range.
+/// Cost: 6 compares, up to 5 additions. Total: any `v`, NaN included, gives an output in the range.
+/// Source: own; range before rate is a rule of this project.
 ///
 /// ```
-/// use controller_core::{Limit, LimitConfig};
+/// use controller_core::{Accumulator, Limit, LimitConfig};
 /// let config = LimitConfig { lo: 0.0, hi: 10.0, rate_up: Some(50.0), rate_down: None };
 /// let limit = Limit::<f32>::new(&config, 0.1).unwrap();
-/// let out = limit.apply(2.0, 9.0);
+/// let mut last = Accumulator::new(2.0);
+/// let out = limit.apply(&mut last, 9.0);
 /// assert_eq!((out.u, out.rate), (7.0, true));
-/// assert!(limit.apply(8.0, 11.0).high);
+/// assert!(limit.apply(&mut last, 11.0).high);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit<T> {
@@ -72,11 +76,11 @@ pub struct Limit<T> {
 pub struct Limited<T> {
     /// The output \[u\].
     pub u: T,
-    /// At the upper limit.
+    /// It is at the upper limit.
     pub high: bool,
-    /// At the lower limit.
+    /// It is at the lower limit.
     pub low: bool,
-    /// The rate limit was active.
+    /// The rate held it back.
     pub rate: bool,
 }
 
@@ -90,8 +94,8 @@ impl<T: Real> Limit<T> {
         check.bounds((Param::OutputLo, config.lo), (Param::OutputHi, config.hi), RANGE_LIMIT);
         check.optional(Param::OutputRateUp, config.rate_up, f64::MIN_POSITIVE, 1e15);
         check.optional(Param::OutputRateDown, config.rate_down, f64::MIN_POSITIVE, 1e15);
-        // A step as wide as the range is no limit; so a missing rate costs the same as a given one.
-        let full = 2.0 * (config.hi - config.lo);
+        // Wider than any step between two ranges: never active, and a missing rate costs the same as a given one.
+        let full = 8.0 * RANGE_LIMIT;
         let per_sample = |rate: Option<f64>| rate.map_or(full, |r| (r * ts).min(full));
         check.finish(Self {
             lo: T::from_f64(config.lo),
@@ -101,13 +105,25 @@ impl<T: Real> Limit<T> {
         })
     }
 
-    /// Limits `v` \[u\] after an output `before` \[u\].
+    /// Limits `v` \[u\] after the output `last`, which becomes this one.
+    #[inline(always)]
+    pub fn apply(&self, last: &mut Accumulator<T>, v: T) -> Limited<T> {
+        let rate = last.approach(v, self.down, self.up);
+        let slewed = last.value();
+        let u = slewed.clamp_to(self.lo, self.hi);
+        if u != slewed {
+            last.set(u);
+        }
+        Limited { u, high: u >= self.hi, low: u <= self.lo, rate }
+    }
+
+    /// The same limiter with steps of at most `step` \[u\], above 0.
     #[must_use]
     #[inline(always)]
-    pub fn apply(&self, before: T, v: T) -> Limited<T> {
-        let slewed = v.clamp_to(before - self.down, before + self.up);
-        let u = slewed.clamp_to(self.lo, self.hi);
-        Limited { u, high: slewed > self.hi, low: slewed < self.lo, rate: slewed != v }
+    pub fn no_faster_than(mut self, step: T) -> Self {
+        self.up = if step < self.up { step } else { self.up };
+        self.down = if step < self.down { step } else { self.down };
+        self
     }
 
     /// `v` moved into the range, without the rate.

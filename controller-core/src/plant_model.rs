@@ -125,7 +125,7 @@ impl PlantModel {
     /// Order of the denominator, integrators included.
     #[must_use]
     pub fn order(&self) -> usize {
-        self.integrators + self.poles.iter().map(Factor::order).sum::<usize>()
+        self.integrators.saturating_add(self.poles.iter().map(Factor::order).sum())
     }
 
     /// Order of the numerator.

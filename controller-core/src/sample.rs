@@ -37,6 +37,17 @@ pub enum FallbackAction {
     },
 }
 
+impl FallbackAction {
+    /// The output it goes to \[u\]; `None` when it stays.
+    #[must_use]
+    pub fn output(&self) -> Option<f64> {
+        match *self {
+            Self::Hold => None,
+            Self::Substitute { output } | Self::Ramp { output, .. } => Some(output),
+        }
+    }
+}
+
 /// When a loop closes again after a fallback.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FallbackReturn {
@@ -182,16 +193,16 @@ impl<T: Real> SampleGuard<T> {
 
     /// Tells the guard that `n` samples were lost: more than may be held means settling at the next good one.
     pub fn lost(&self, state: &mut SampleGuardState, n: u32) {
-        state.settle |= n > u32::from(self.hold_samples);
+        // Lost and bad samples are the same to the loop: time without a measurement.
+        let without = u32::from(state.bad).saturating_add(n);
+        state.bad = u16::try_from(without).unwrap_or(u16::MAX);
+        state.settle |= without > u32::from(self.hold_samples);
     }
 
-    /// Where the fallback takes the output next \[u\], from `u`.
+    /// Where the fallback takes the output \[u\] (`None`: it stays) and the longest step on the way \[u\].
     #[must_use]
-    pub fn fallback_output(&self, u: T) -> T {
-        match self.target {
-            None => u,
-            Some(target) => target.clamp_to(u - self.step, u + self.step),
-        }
+    pub fn fallback_output(&self) -> (Option<T>, T) {
+        (self.target, self.step)
     }
 
     /// The measurement's range \[y\].

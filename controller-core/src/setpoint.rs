@@ -1,5 +1,6 @@
 //! Set-point conditioning: range, rate, following the measurement.
 
+use crate::accumulator::Accumulator;
 use crate::error::{Checker, ConfigErrors, Param};
 use crate::limit::RANGE_LIMIT;
 use crate::real::{Real, coefficient};
@@ -40,19 +41,20 @@ impl SetpointConfig {
     }
 }
 
-/// A set-point conditioner for one sampling period. Its state is one number, the working set-point.
+/// A set-point conditioner for one sampling period. Its state is the working set-point, a compensated sum, so that slow
+/// ramps do not stall.
 ///
 /// Law: `w[k] = clamp(clamp(r[k], lo, hi), w[k-1] - ts*rate_down, w[k-1] + ts*rate_up)`; after the range itself has
-/// moved, the working set-point ramps back into it. Cost: 4 compares, 2 additions.
+/// moved, the working set-point ramps back into it. Cost: 4 compares, up to 5 additions. Source: own.
 ///
 /// ```
-/// use controller_core::{Setpoint, SetpointConfig};
+/// use controller_core::{Accumulator, Setpoint, SetpointConfig};
 /// let config = SetpointConfig { lo: 0.0, hi: 90.0, rate_up: Some(10.0), ..SetpointConfig::default() };
 /// let setpoint = Setpoint::<f64>::new(&config, 0.5).unwrap();
-/// let mut w = setpoint.start(200.0, 20.0); // a ramp starts at the measurement
-/// assert_eq!(w, 20.0);
-/// w = setpoint.advance(w, 200.0);
-/// assert_eq!(w, 25.0);
+/// let mut w = Accumulator::new(setpoint.start(200.0, 20.0)); // a ramp starts at the measurement
+/// assert_eq!(w.value(), 20.0);
+/// setpoint.advance(&mut w, 200.0);
+/// assert_eq!(w.value(), 25.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setpoint<T> {
@@ -94,18 +96,16 @@ impl<T: Real> Setpoint<T> {
         self.into_range(if self.ramps || self.track { y } else { r })
     }
 
-    /// The next working set-point after `working` \[y\].
-    #[must_use]
+    /// Moves the working set-point towards `r` \[y\].
     #[inline(always)]
-    pub fn advance(&self, working: T, r: T) -> T {
-        self.ramp(working, self.into_range(r))
+    pub fn advance(&self, working: &mut Accumulator<T>, r: T) {
+        self.ramp(working, self.into_range(r));
     }
 
     /// As [`advance`](Self::advance) for a set-point that is in the range already.
-    #[must_use]
     #[inline(always)]
-    pub fn ramp(&self, working: T, r: T) -> T {
-        r.clamp_to(working - self.down, working + self.up)
+    pub fn ramp(&self, working: &mut Accumulator<T>, r: T) {
+        let _ = working.approach(r, self.down, self.up);
     }
 
     /// `r` moved into the range \[y\].

@@ -39,6 +39,7 @@ pub struct AnyCompensator<T, M> {
     inv_gain: T,
     gain: T,
     delay: usize,
+    ts: T,
     memory: PhantomData<fn() -> M>,
 }
 
@@ -62,7 +63,7 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
         let Discretised { g, y_feed, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
             discretise::<T>(config, ts);
         let rounded = |list: Vec<f64, MAX_ORDER>| list.iter().map(|&x| coefficient(x)).collect();
-        Ok(Self {
+        let law = Self {
             g: rounded(g),
             y_feed: rounded(y_feed),
             y_lead: rounded(y_lead),
@@ -72,8 +73,11 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
             inv_gain: coefficient(inv_gain),
             gain: coefficient(gain),
             delay,
+            ts: coefficient(ts),
             memory: PhantomData,
-        })
+        };
+        law.coefficients().check()?;
+        Ok(law)
     }
 
     /// A zeroed state over `memory`.
@@ -102,6 +106,13 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     pub fn needed_capacity(config: &CompensatorConfig, ts: f64) -> usize {
         let delay = config.model.dead_time + config.latency;
         super::shape::whole_samples(delay, ts, super::shape::nearness::<f32>()).0.saturating_add(1)
+    }
+
+    /// Whether the delay of this law fits the memory of `state`, which may have been made for another law. A law that
+    /// does not fit must not adopt the state: it would read the oldest sample in place of older ones.
+    #[must_use]
+    pub fn fits(&self, state: &AnyCompensatorState<T, M>) -> bool {
+        self.delay < state.line.capacity()
     }
 
     /// Order of the chains and number of excess sections.
@@ -161,7 +172,7 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
     }
 
     fn skip(&self, state: &mut Self::State, u: T, n: usize) {
-        state.view().skip(u, n);
+        state.view().skip(&self.coefficients(), u, n);
     }
 
     /// As the trait says; between laws of different shapes the lags cannot be kept: they settle at `y` and at what
@@ -187,10 +198,16 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
         }
     }
 
+    fn ts(&self) -> Option<T> {
+        Some(self.ts)
+    }
+
+    fn inv_gain(&self) -> T {
+        self.inv_gain
+    }
+
     fn bounds(&self) -> (f64, f64) {
-        let (y, u) = self.coefficients().bounds();
-        let gain = self.gain.to_f64();
-        (gain * y, gain * u)
+        self.coefficients().bounds()
     }
 
     fn words(state: &Self::State) -> usize {

@@ -211,7 +211,8 @@ fn check_pole(check: &mut Checker, pole: Factor, ts: f64) {
             }
             None => {
                 // Longest natural period is free; the shortest damped one must cover two samples.
-                let damped = libm::sqrt(4.0 * pole.a2 - pole.a1 * pole.a1) / (2.0 * pole.a2);
+                let square = 4.0 * pole.a2 - pole.a1 * pole.a1;
+                let damped = if square > 0.0 { libm::sqrt(square) / (2.0 * pole.a2) } else { 0.0 };
                 if damped * ts >= core::f64::consts::PI {
                     let nyquist = core::f64::consts::PI / ts;
                     check.fault(Param::ModelPoles, Reason::OutOfRange, damped, 0.0, nyquist);

@@ -1,6 +1,7 @@
 //! The one step that every compensator runs, over slices, and the trait the controller sees.
 
 use super::view::LagsView;
+use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::lag::Lag;
 use crate::real::Real;
 use crate::snapshot::{Reader, Writer};
@@ -55,7 +56,7 @@ impl<T: Real> Coefficients<'_, T> {
 
     /// A chain of lags, each fed by the state before it: `w_n + sum E_j*(w_(j-1) - w_j)`.
     #[inline(always)]
-    fn u_path(&self, lags: &mut [Lag<T>], u: T) -> T {
+    pub(super) fn u_path(&self, lags: &mut [Lag<T>], u: T) -> T {
         let mut x = u;
         let mut sum = T::ZERO;
         for ((lag, &g), &lead) in lags.iter_mut().zip(self.g).zip(self.u_lead) {
@@ -122,21 +123,38 @@ impl<T: Real> Coefficients<'_, T> {
         sum + x
     }
 
-    /// Bounds of the estimate per unit of `y` and of `u`, for overflow checks.
+    /// Largest size of any number in the `y` path per unit of `y`, and in the `u` path per unit of `u`, the estimate
+    /// included, for overflow checks. Infinite or NaN when a coefficient is.
     pub(super) fn bounds(&self) -> (f64, f64) {
         let size = |x: &T| x.to_f64().abs();
-        let from_y: f64 = self
-            .y_lead
-            .chunks(2)
-            .zip(self.y_dc.chunks(2))
-            .zip(self.y_feed.chunks(2))
-            .map(|((lead, dc), feed)| {
-                let fed = 1.0 + 2.0 * feed.iter().map(size).sum::<f64>();
-                fed * (2.0 * lead.iter().map(size).sum::<f64>() + dc.iter().map(size).sum::<f64>())
-            })
-            .product();
-        let from_u = 1.0 + 2.0 * self.u_lead.iter().map(size).sum::<f64>();
-        (from_y * size(&self.inv_gain), from_u)
+        let sum = |list: &[T]| list.iter().map(size).sum::<f64>();
+        let (mut signal, mut largest) = (1.0_f64, 1.0_f64);
+        for ((lead, dc), feed) in self.y_lead.chunks(2).zip(self.y_dc.chunks(2)).zip(self.y_feed.chunks(2)) {
+            // A lag stays within its input, a difference within twice of it.
+            let fed = (1.0 + 2.0 * sum(feed)) * signal;
+            signal = (2.0 * sum(lead) + sum(dc)) * fed;
+            largest = largest + fed + signal;
+        }
+        let from_y = largest + signal * size(&self.inv_gain);
+        (from_y, 1.0 + 2.0 * sum(self.u_lead))
+    }
+
+    /// Refuses coefficients that do not fit the number type.
+    pub(super) fn check(&self) -> Result<(), ConfigErrors> {
+        let mut check = Checker::default();
+        if !self.is_finite() {
+            let (y, u) = self.bounds();
+            let worst = if y > u { y } else { u };
+            check.fault(Param::Overflow, Reason::OutOfRange, worst, 0.0, T::LARGEST);
+        }
+        check.into_result()
+    }
+
+    fn is_finite(&self) -> bool {
+        let (y, u) = self.bounds();
+        let rest =
+            [self.inv_gain, self.gain].iter().chain(self.g).chain(self.e_gain).all(|x| x.is_finite_number());
+        y <= T::LARGEST && u <= T::LARGEST && rest
     }
 }
 
@@ -165,14 +183,21 @@ pub trait Compensate<T: Real>: Sealed {
     /// on, keep their history. `d_hat = 0`.
     fn resettle(&self, state: &mut Self::State, y0: T);
 
-    /// `n` samples were lost while `u` was applied: moves the delay line only.
+    /// `n` samples were lost while `u` was applied: the delay line and the chain of applied outputs go on. At most 1000
+    /// samples plus the line's capacity are walked through; after more, the chain counts as settled.
     fn skip(&self, state: &mut Self::State, u: T, n: usize);
 
     /// Takes the state over from `old`; `y` and `u` are the last measurement and output. `d_hat` does not jump.
     /// Returns by how much `u_f` does.
     fn adopt(&self, old: &Self, state: &mut Self::State, y: T, u: T) -> T;
 
-    /// Bounds of `|u_f|` per unit of `|y|` and of `|u|`.
+    /// Sampling period the law was built for \[s\].
+    fn ts(&self) -> Option<T>;
+
+    /// `1/K` of the model; its sign is that of the plant. 0 without a model.
+    fn inv_gain(&self) -> T;
+
+    /// Bounds of every number of a step per unit of `|y|` and of `|u|`.
     fn bounds(&self) -> (f64, f64);
 
     /// Number of words a snapshot of the state needs.

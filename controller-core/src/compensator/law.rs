@@ -58,6 +58,7 @@ pub struct Compensator<T, const N: usize, const E: usize, const R: usize> {
     inv_gain: T,
     gain: T,
     delay: usize,
+    ts: T,
 }
 
 /// State of a [`Compensator`]: lags (plain signals), the applied outputs of the last `R` samples, the estimate at
@@ -126,7 +127,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
         check.into_result()?;
         let Discretised { g, y_feed, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
             discretise::<T>(config, ts);
-        Ok(Self {
+        let law = Self {
             g: array(&g),
             y_feed: array(&y_feed),
             y_lead: array(&y_lead),
@@ -136,7 +137,10 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
             inv_gain: coefficient(inv_gain),
             gain: coefficient(gain),
             delay,
-        })
+            ts: coefficient(ts),
+        };
+        law.coefficients().check()?;
+        Ok(law)
     }
 
     /// An estimator, see [`EstimatorConfig`]; `latency` \[s\].
@@ -225,7 +229,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
     }
 
     fn skip(&self, state: &mut Self::State, u: T, n: usize) {
-        state.view().skip(u, n);
+        state.view().skip(&self.coefficients(), u, n);
     }
 
     fn adopt(&self, old: &Self, state: &mut Self::State, y: T, u: T) -> T {
@@ -240,10 +244,16 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
         (old.gain - self.gain) * d_hat
     }
 
+    fn ts(&self) -> Option<T> {
+        Some(self.ts)
+    }
+
+    fn inv_gain(&self) -> T {
+        self.inv_gain
+    }
+
     fn bounds(&self) -> (f64, f64) {
-        let (y, u) = self.coefficients().bounds();
-        let gain = self.gain.to_f64();
-        (gain * y, gain * u)
+        self.coefficients().bounds()
     }
 
     fn words(state: &Self::State) -> usize {

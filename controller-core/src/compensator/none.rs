@@ -29,6 +29,12 @@ impl<T: Real> Compensate<T> for NoCompensator {
     fn adopt(&self, _: &Self, _: &mut (), _: T, _: T) -> T {
         T::ZERO
     }
+    fn ts(&self) -> Option<T> {
+        None
+    }
+    fn inv_gain(&self) -> T {
+        T::ZERO
+    }
     fn bounds(&self) -> (f64, f64) {
         (0.0, 0.0)
     }

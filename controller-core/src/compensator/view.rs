@@ -6,6 +6,9 @@ use crate::lag::Lag;
 use crate::real::Real;
 use crate::snapshot::{Reader, Writer};
 
+/// Samples for which the chain of applied outputs is followed after the line has filled, when samples were lost.
+const SETTLING: usize = 1000;
+
 /// The lags, borrowed.
 pub(super) struct LagsView<'a, T> {
     pub(super) y: &'a mut [Lag<T>],
@@ -44,9 +47,15 @@ impl<T: Real, M: Memory<T>> StateView<'_, T, M> {
     }
 
     /// See [`super::Compensate::skip`].
-    pub(super) fn skip(self, u: T, n: usize) {
-        for _ in 0..n.min(self.line.capacity()) {
+    pub(super) fn skip(self, law: &Coefficients<'_, T>, u: T, n: usize) {
+        // Once the line is full of `u`, the chain only settles; after long it has.
+        let walked = n.min(self.line.capacity() + SETTLING);
+        for _ in 0..walked {
             self.line.push(u);
+            let _ = law.u_path(self.lags.u, self.line.tap(law.delay));
+        }
+        if n > walked {
+            self.lags.u.fill(Lag::settled(u));
         }
     }
 

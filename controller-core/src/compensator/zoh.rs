@@ -29,7 +29,9 @@ impl Pole {
             Self::Real { rate } => (-libm::expm1(-rate), 0.0),
             Self::Pair { d1, d0 } => {
                 let decay = 0.5 * d1;
-                let angle = libm::sqrt(d0 - decay * decay);
+                // A factor that is critically damped but for rounding counts as such.
+                let square = d0 - decay * decay;
+                let angle = if square > 0.0 { libm::sqrt(square) } else { 0.0 };
                 let half = libm::sin(0.5 * angle);
                 let size = libm::exp(-decay);
                 (-libm::expm1(-decay) + size * 2.0 * half * half, size * libm::sin(angle))

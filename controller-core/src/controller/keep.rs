@@ -32,8 +32,9 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         state.pd = u0 - state.pid.integral();
         state.guard = SampleGuardState::default();
         state.mode = Mode::Auto;
-        (state.u, state.v, state.u_f) = (u0, u0, T::ZERO);
-        (state.y, state.r, state.r_asked) = (y0, r0, r0);
+        state.u.set(u0);
+        state.r.set(r0);
+        (state.v, state.u_f, state.y, state.r_asked) = (u0, T::ZERO, y0, r0);
         state.offset = T::ZERO;
         state.alarms = Status::NONE;
         (state.compensating, state.overrun, state.awake, state.started) = (true, false, true, true);
@@ -52,28 +53,35 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         }
         state.r_asked = self.setpoint.into_range(state.r_asked);
         // What the old anti-windup rule still owes for the last sample.
-        let owed = old.anti_windup.correction(state.pid.increment(), state.v, state.u);
-        state.v = state.u;
+        let u = state.u.value();
+        let owed = if state.mode.is_automatic() {
+            old.anti_windup.correction(state.pid.increment(), state.v, u)
+        } else {
+            T::ZERO
+        };
+        state.v = u;
         let last = state.pid.input();
         let before = old.pid.preview(&state.pid, last);
-        let after = self.pid.preview(&state.pid, self.seen(state.r, state.y));
+        let after = self.pid.preview(&state.pid, self.seen(state.r.value(), state.y));
         let jump = if self.ts == old.ts {
-            self.compensator.adopt(&old.compensator, &mut state.compensator, state.y, state.u)
+            self.compensator.adopt(&old.compensator, &mut state.compensator, state.y, u)
         } else {
-            self.compensator.settle(&mut state.compensator, state.y, state.u);
+            self.compensator.settle(&mut state.compensator, state.y, u);
             -state.u_f
         };
         let jump = if state.compensating { jump } else { T::ZERO };
         state.pid.shift_integral((before - after) + (owed - jump));
+        state.pid.bound_integral(self.integral_bound);
         // The last increment has been judged; the new rule must not judge it again.
         state.pid.forget_increment();
     }
 
     /// Tells the loop that `n` samples were lost while its last output was applied.
     ///
-    /// Up to `hold_samples` the compensator is taken through them with the last measurement; beyond, only its delay
-    /// line is, and the loop settles at its next good measurement. The next output carries [`Status::OVERRUN`].
-    /// Cost: at most `hold_samples` compensator samples plus one write per cell of the delay line.
+    /// They count like bad ones: up to `hold_samples` in a row the compensator is taken through them with the last
+    /// measurement; beyond, only what it knows of the applied output goes on, and the loop settles at its next good
+    /// measurement. The next output carries [`Status::OVERRUN`].
+    /// Cost: at most `hold_samples` compensator samples, or half of 1000 samples plus the capacity of the delay line.
     pub fn advance(&self, state: &mut ControllerState<T, C::State>, n: u32) {
         state.overrun |= n > 0;
         if !state.started {
@@ -81,10 +89,14 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         }
         self.guard.lost(&mut state.guard, n);
         if state.guard.settle {
-            self.compensator.skip(&mut state.compensator, state.u, usize::try_from(n).unwrap_or(usize::MAX));
+            self.compensator.skip(
+                &mut state.compensator,
+                state.u.value(),
+                usize::try_from(n).unwrap_or(usize::MAX),
+            );
         } else {
             for _ in 0..n {
-                let _ = self.compensator.sample(&mut state.compensator, state.y, state.u);
+                let _ = self.compensator.sample(&mut state.compensator, state.y, state.u.value());
             }
         }
     }

@@ -83,8 +83,18 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let alarms = check.merge(Alarms::new(&config.alarms));
         let offsets = ((Param::OffsetLo, config.offset_lo), (Param::OffsetHi, config.offset_hi));
         check.bounds(offsets.0, offsets.1, RANGE_LIMIT);
-        check.optional(Param::OffOutput, config.off_output, -RANGE_LIMIT, RANGE_LIMIT);
+        let (lo, hi) = (config.limits.lo, config.limits.hi);
+        check.optional(Param::OffOutput, config.off_output, lo, hi);
+        check.optional(Param::FallbackOutput, config.fallback.action.output(), lo, hi);
         check.range(Param::InitialOutput, config.initial_output, -RANGE_LIMIT, RANGE_LIMIT);
+        let [_, ki, _] = config.pid.signed_gains();
+        let inv_gain = compensator.inv_gain().to_f64();
+        if ki * inv_gain < 0.0 {
+            check.fault(Param::ModelGain, Reason::SignMismatch, 1.0 / inv_gain, 0.0, 0.0);
+        }
+        if let Some(other) = compensator.ts().filter(|&other| other != coefficient::<T>(ts)) {
+            check.fault(Param::Ts, Reason::Mismatch, ts, other.to_f64(), other.to_f64());
+        }
         if let (true, Some(pid)) = (check.is_clean(), &pid) {
             Self::check_overflow(&mut check, config, pid, &compensator);
         }
@@ -132,8 +142,9 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let r = larger(config.setpoint.lo, config.setpoint.hi);
         let u = larger(config.limits.lo, config.limits.hi);
         let signal = y + r + config.deadband.abs();
+        let offset = larger(config.offset_lo, config.offset_hi);
         let (from_y, from_u) = compensator.bounds();
-        let worst = pid.bound() * signal + from_y * y + from_u * u;
+        let worst = pid.bound() * signal + from_y * y + from_u * u + offset;
         let most = 1e-6 * T::LARGEST;
         if worst.is_nan() || worst > most {
             check.fault(Param::Overflow, Reason::OutOfRange, worst, 0.0, most);

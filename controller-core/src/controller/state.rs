@@ -1,5 +1,6 @@
 //! The state of a loop.
 
+use crate::accumulator::Accumulator;
 use crate::mode::Mode;
 use crate::pid::PidState;
 use crate::real::Real;
@@ -19,7 +20,7 @@ pub struct ControllerState<T, S> {
     /// Mode in force in the last sample.
     pub(super) mode: Mode,
     /// Last output, limited.
-    pub(super) u: T,
+    pub(super) u: Accumulator<T>,
     /// Last output before the limits.
     pub(super) v: T,
     /// Last filtered terms.
@@ -29,7 +30,7 @@ pub struct ControllerState<T, S> {
     /// Last good measurement.
     pub(super) y: T,
     /// Working set-point.
-    pub(super) r: T,
+    pub(super) r: Accumulator<T>,
     /// Last usable set-point as asked for, moved into its range.
     pub(super) r_asked: T,
     /// Last usable offset.
@@ -50,7 +51,7 @@ impl<T: Real, S: Default> Default for ControllerState<T, S> {
 }
 
 /// Words of the part of the state that has the same size in every loop, in numbers and in flags.
-const NUMBERS: usize = 9 + 8;
+const NUMBERS: usize = 9 + 10;
 const FLAGS: usize = 3;
 
 impl<T: Real, S> ControllerState<T, S> {
@@ -62,12 +63,12 @@ impl<T: Real, S> ControllerState<T, S> {
             compensator,
             guard: SampleGuardState::default(),
             mode: Mode::Hold,
-            u: T::ZERO,
+            u: Accumulator::new(T::ZERO),
             v: T::ZERO,
             pd: T::ZERO,
             u_f: T::ZERO,
             y: T::ZERO,
-            r: T::ZERO,
+            r: Accumulator::new(T::ZERO),
             r_asked: T::ZERO,
             offset: T::ZERO,
             alarms: Status::NONE,
@@ -81,7 +82,7 @@ impl<T: Real, S> ControllerState<T, S> {
     /// The last output \[u\].
     #[must_use]
     pub fn u(&self) -> T {
-        self.u
+        self.u.value()
     }
 
     /// The mode in force in the last sample.
@@ -115,7 +116,9 @@ impl<T: Real, S> ControllerState<T, S> {
 
     pub(super) fn save_own(&self, writer: &mut Writer<'_>) {
         writer.numbers(&self.pid.parts());
-        writer.numbers(&[self.u, self.v, self.pd, self.u_f, self.y, self.r, self.r_asked, self.offset]);
+        let (u, r) = (&self.u, &self.r);
+        writer.numbers(&[u.value(), u.carry(), r.value(), r.carry()]);
+        writer.numbers(&[self.v, self.pd, self.u_f, self.y, self.r_asked, self.offset]);
         let g = &self.guard;
         let flags = [g.fallback, g.settle, self.compensating, self.overrun, self.awake, self.started];
         let bits = flags.iter().enumerate().fold(0, |word, (i, &flag)| word | u32::from(flag) << i);
@@ -126,7 +129,10 @@ impl<T: Real, S> ControllerState<T, S> {
 
     pub(super) fn restore_own(&mut self, reader: &mut Reader<'_>) -> Option<()> {
         self.pid = PidState::from_parts(reader.numbers()?);
-        [self.u, self.v, self.pd, self.u_f, self.y, self.r, self.r_asked, self.offset] = reader.numbers()?;
+        let [u, u_carry, r, r_carry] = reader.numbers()?;
+        self.u = Accumulator::from_parts(u, u_carry);
+        self.r = Accumulator::from_parts(r, r_carry);
+        [self.v, self.pd, self.u_f, self.y, self.r_asked, self.offset] = reader.numbers()?;
         let word = reader.word()?;
         let flag = |i: u32| word >> i & 1 == 1;
         self.guard.fallback = flag(0);

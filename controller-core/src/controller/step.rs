@@ -4,6 +4,7 @@ use super::io::{ControllerInput, ControllerOutput};
 use super::law::Controller;
 use super::state::ControllerState;
 use crate::compensator::{Compensate, CompensatorOutput};
+use crate::limit::Limited;
 use crate::mode::Mode;
 use crate::pid::PidInput;
 use crate::real::Real;
@@ -36,9 +37,9 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         status |= self.take_setpoint_and_offset(state, input);
         if !state.awake {
             state.awake = true;
-            state.u = self.initial_output;
+            state.u.set(self.initial_output);
         }
-        let (applied, replaced) = self.applied(state.u, input.u_applied);
+        let (applied, replaced) = self.applied(state.u.value(), input.u_applied);
         status |= replaced;
         if !state.started {
             if !usable {
@@ -46,7 +47,8 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             }
             self.start(state, input, applied);
         }
-        let y = if usable { input.y } else { state.y };
+        // Good measurements are followed while a latched fallback waits, too.
+        let y = if usable || verdict == Verdict::Await { input.y } else { state.y };
         state.y = y;
 
         // 2, 3. The applied output goes into the compensator, the disturbance comes out of it.
@@ -67,17 +69,20 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             (true, false) => Mode::Hold,
         };
         let sample = Checked { y, u_f, applied, was, mode };
-        if mode.is_automatic() {
-            if held {
-                state.v = state.u;
-            } else {
-                status |= self.close(state, input, &sample);
-            }
+        let mut slowest = None;
+        let mut wanted = state.u.value();
+        if held {
+            // Output and terms stay; what the last sample wanted is still to be judged by the anti-windup.
+        } else if mode.is_automatic() {
+            status |= self.close(state, input, &sample);
+            wanted = state.v;
         } else {
-            status |= self.open(state, input, &sample);
+            let (opened, step) = self.open(state, input, &sample, verdict);
+            status |= opened;
+            slowest = step;
+            wanted = state.v;
         }
-        let limited = self.limit.apply(state.u, state.v);
-        state.u = limited.u;
+        let limited = self.limit_output(state, wanted, slowest);
         if !mode.is_automatic() {
             // The integral term follows, so that closing the loop moves nothing.
             state.pid.set_integral(limited.u - state.pd - u_f - state.offset);
@@ -85,14 +90,14 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         state.mode = mode;
 
         // 7. Alarms, status, output.
-        if usable {
-            state.alarms = self.alarms.check(state.alarms, state.r, y);
+        if usable || verdict == Verdict::Await {
+            state.alarms = self.alarms.check(state.alarms, state.r.value(), y);
         }
         status |= Status::COMPENSATING.when(C::PRESENT && input.compensate && mode.is_automatic())
             | Status::LIMITED_HIGH.when(limited.high)
             | Status::LIMITED_LOW.when(limited.low)
             | Status::RATE_LIMITED.when(limited.rate)
-            | Status::SETPOINT_RAMPING.when(state.r != state.r_asked)
+            | Status::SETPOINT_RAMPING.when(state.r.value() != state.r_asked)
             | state.alarms;
         self.output(state, estimate, status)
     }
@@ -109,81 +114,112 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         sample: &Checked<T>,
     ) -> Status {
         let begin = if !sample.was.is_automatic() {
-            let there = self.target(sample.was, state.u, input).unwrap_or(state.u);
-            Some(self.limit.apply(state.u, there).u)
+            let u = state.u.value();
+            let there = self.target(sample.was, input).unwrap_or(u);
+            let mut last = state.u;
+            Some((self.limit.apply(&mut last, there).u, T::ZERO))
         } else if sample.was != sample.mode {
-            let r = self.setpoint.advance(state.r, self.asked_by(sample.was, state, input));
-            let seen = self.seen(r, sample.y);
-            let i = state.pid.integral() + self.pid.increment(&state.pid, seen) + self.unwind(state, sample);
-            Some(i + self.pid.preview(&state.pid, seen) + state.offset + sample.u_f)
+            let mut r = state.r;
+            self.setpoint.advance(&mut r, self.asked_by(sample.was, state, input));
+            let seen = self.seen(r.value(), sample.y);
+            let increment = self.allowed(input, self.pid.increment(&state.pid, seen));
+            let i = state.pid.integral() + increment + self.unwind(state, sample);
+            Some((i + self.pid.preview(&state.pid, seen) + state.offset + sample.u_f, increment))
         } else {
             None
         };
-        state.r = self.setpoint.ramp(state.r, state.r_asked);
+        self.setpoint.ramp(&mut state.r, state.r_asked);
         self.automatic(state, input, sample, begin)
     }
 
-    /// PID + offset + compensator; with `begin`, the integral term is set so that the sum is `begin`.
+    /// PID + offset + compensator; with `begin`, the integral term is set so that the sum is its first number, of which
+    /// the second is the increment that the next sample may still take back.
     #[inline(always)]
     fn automatic(
         &self,
         state: &mut ControllerState<T, C::State>,
         input: &ControllerInput<T>,
         sample: &Checked<T>,
-        begin: Option<T>,
+        begin: Option<(T, T)>,
     ) -> Status {
-        let seen = self.seen(state.r, sample.y);
+        let seen = self.seen(state.r.value(), sample.y);
         let increment = self.pid.increment(&state.pid, seen);
+        let allowed = self.allowed(input, increment);
         state.pd = self.pid.filter(&mut state.pid, seen);
-        let mut status = Status::NONE;
         match begin {
-            Some(v) => state.pid.set_integral(v - state.pd - sample.u_f - state.offset),
+            Some((v, increment)) => {
+                state.pid.set_integral(v - state.pd - sample.u_f - state.offset);
+                state.pid.remember_increment(increment);
+            }
             None => {
                 let correction = self.unwind(state, sample);
-                let inhibited =
-                    (input.inhibit_up && increment > T::ZERO) || (input.inhibit_down && increment < T::ZERO);
-                status = Status::INHIBITED.when(inhibited);
                 state.pid.shift_integral(correction);
-                state.pid.integrate(if inhibited { T::ZERO } else { increment });
-                state.pid.bound_integral(self.integral_bound);
+                state.pid.integrate(allowed);
             }
         }
+        state.pid.bound_integral(self.integral_bound);
         state.v = state.pid.integral() + state.pd + state.offset + sample.u_f;
-        status
+        Status::INHIBITED.when(allowed != increment)
     }
 
-    /// The output that a mode other than Auto and Cascade gives, into `state.v`.
+    /// The increment that a secondary loop lets through.
+    #[inline(always)]
+    fn allowed(&self, input: &ControllerInput<T>, increment: T) -> T {
+        let inhibited =
+            (input.inhibit_up && increment > T::ZERO) || (input.inhibit_down && increment < T::ZERO);
+        if inhibited { T::ZERO } else { increment }
+    }
+
+    /// The output that a mode other than Auto and Cascade gives, into `state.v`, and the longest step towards it.
     ///
-    /// A mode that keeps the output keeps what the automatic law gives in the sample of the change.
+    /// A mode that keeps the output keeps what the automatic law gives in the sample of the change; on a bad sample, what
+    /// is there.
     fn open(
         &self,
         state: &mut ControllerState<T, C::State>,
         input: &ControllerInput<T>,
         sample: &Checked<T>,
-    ) -> Status {
-        let target = self.target(sample.mode, state.u, input);
-        let left_now = sample.was.is_automatic();
-        if left_now && target.is_none() && sample.mode != Mode::Fallback {
-            state.r = self.setpoint.advance(state.r, self.asked_by(sample.was, state, input));
-            return self.automatic(state, input, sample, None);
+        verdict: Verdict,
+    ) -> (Status, Option<T>) {
+        let target = self.target(sample.mode, input);
+        let good = matches!(verdict, Verdict::Use | Verdict::UseAfterSettling);
+        if sample.was.is_automatic() && target.is_none() && good {
+            let asked = self.asked_by(sample.was, state, input);
+            self.setpoint.advance(&mut state.r, asked);
+            return (self.automatic(state, input, sample, None), None);
         }
-        state.r = if sample.mode.releases_setpoint() && self.setpoint.tracks() {
-            self.setpoint.into_range(sample.y)
+        if sample.mode.releases_setpoint() && self.setpoint.tracks() {
+            state.r.set(self.setpoint.into_range(sample.y));
         } else {
-            self.setpoint.ramp(state.r, state.r_asked)
-        };
-        state.pd = self.pid.filter(&mut state.pid, self.seen(state.r, sample.y));
-        state.v = target.unwrap_or(state.u);
-        Status::NONE
+            self.setpoint.ramp(&mut state.r, state.r_asked);
+        }
+        state.pd = self.pid.filter(&mut state.pid, self.seen(state.r.value(), sample.y));
+        state.v = target.unwrap_or(state.u.value());
+        let step = if sample.mode == Mode::Fallback { Some(self.guard.fallback_output().1) } else { None };
+        (Status::NONE, step)
+    }
+
+    /// The output within range and rate, and within `slowest` per sample.
+    #[inline(always)]
+    fn limit_output(
+        &self,
+        state: &mut ControllerState<T, C::State>,
+        wanted: T,
+        slowest: Option<T>,
+    ) -> Limited<T> {
+        match slowest {
+            None => self.limit.apply(&mut state.u, wanted),
+            Some(step) => self.limit.no_faster_than(step).apply(&mut state.u, wanted),
+        }
     }
 
     /// Where a mode wants the output \[u\]; `None`: where it is.
-    fn target(&self, mode: Mode, u: T, input: &ControllerInput<T>) -> Option<T> {
+    fn target(&self, mode: Mode, input: &ControllerInput<T>) -> Option<T> {
         match mode {
             Mode::Off => self.off_output,
             Mode::Manual => input.manual.filter(|x| x.is_finite_number()),
             Mode::Track => Some(input.track).filter(|x| x.is_finite_number()),
-            Mode::Fallback => Some(self.guard.fallback_output(u)),
+            Mode::Fallback => self.guard.fallback_output().0,
             Mode::Hold | Mode::Auto | Mode::Cascade => None,
         }
     }
@@ -258,9 +294,11 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         state.u_f
     }
 
-    /// The first good sample of a zeroed state.
+    /// The first good sample of a zeroed state. Without a usable set-point the loop stays at the measurement.
     fn start(&self, state: &mut ControllerState<T, C::State>, input: &ControllerInput<T>, applied: T) {
-        self.settle(state, self.setpoint.start(state.r_asked, input.y), input.y, applied);
+        let asked = self.setpoint_of(input.mode, input).map_or(input.y, |r| self.setpoint.into_range(r));
+        self.settle(state, self.setpoint.start(asked, input.y), input.y, applied);
+        state.r_asked = self.setpoint.into_range(asked);
         state.mode = Mode::Hold;
         state.compensating = input.compensate;
         let _ = self.take_setpoint_and_offset(state, input);
@@ -269,9 +307,9 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// The first good sample after a long time without: everything at rest at the measurement and the applied output.
     fn resettle(&self, state: &mut ControllerState<T, C::State>, y: T, applied: T) {
         self.compensator.resettle(&mut state.compensator, y);
-        let seen = self.seen(state.r, y);
+        let seen = self.seen(state.r.value(), y);
         self.pid.settle(&mut state.pid, seen, applied);
-        state.u = applied;
+        state.u.set(applied);
         state.v = applied;
         state.mode = Mode::Hold;
     }
@@ -286,8 +324,15 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     ) -> ControllerOutput<T> {
         let requested = input.mode.in_force(state.guard.fallback);
         let mode = if requested.is_automatic() { Mode::Hold } else { requested };
-        state.v = self.target(mode, applied, input).unwrap_or(applied);
-        state.u = self.limit.apply(applied, state.v).u;
+        state.v = self.target(mode, input).unwrap_or(applied);
+        state.u.set(applied);
+        let slowest = if mode == Mode::Fallback { Some(self.guard.fallback_output().1) } else { None };
+        let limited = self.limit_output(state, state.v, slowest);
+        state.r.set(state.r_asked);
+        let status = status
+            | Status::LIMITED_HIGH.when(limited.high)
+            | Status::LIMITED_LOW.when(limited.low)
+            | Status::RATE_LIMITED.when(limited.rate);
         state.mode = mode;
         self.output(state, CompensatorOutput::default(), status | Status::UNINITIALISED)
     }
@@ -304,15 +349,15 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let empty = status.has(Status::LIMITED_LOW);
         let (up, down) = if self.reversed { (empty, full) } else { (full, empty) };
         ControllerOutput {
-            u: state.u,
+            u: state.u.value(),
             v: state.v,
             i: state.pid.integral(),
             pd: state.pd,
             u_f: estimate.u_f,
             d_hat: estimate.d_hat,
-            r: state.r,
-            blocked_up: up || state.r >= hi,
-            blocked_down: down || state.r <= lo,
+            r: state.r.value(),
+            blocked_up: up || state.r.value() >= hi,
+            blocked_down: down || state.r.value() <= lo,
             mode: state.mode,
             status,
         }

@@ -251,6 +251,12 @@ impl<T: Real> PidState<T> {
         self.increment = T::ZERO;
     }
 
+    /// Says what the last sample added, when the term was set as a whole.
+    #[inline(always)]
+    pub fn remember_increment(&mut self, increment: T) {
+        self.increment = increment;
+    }
+
     /// Forgets the last increment: it has been judged.
     #[inline(always)]
     pub fn forget_increment(&mut self) {
@@ -267,7 +273,9 @@ impl<T: Real> PidState<T> {
     #[inline(always)]
     pub(crate) fn bound_integral(&mut self, most: T) {
         let i = self.integral.value();
-        if i.magnitude() > most {
+        // Written so that a NaN, which no sum of checked numbers gives, could not stay either.
+        let inside = i.magnitude() <= most;
+        if !inside {
             self.integral.set(i.clamp_to(-most, most));
         }
     }
