@@ -12,6 +12,7 @@ use crate::real::Real;
 /// Every filtered path of the runtime is written with `w[k]` and the difference `x[k] - w[k]`: static gains are
 /// then exact by construction, and a law can be swapped while the state, a plain signal, stays valid.
 ///
+/// Source: the lead-lag realisation of the discrete-exact pair; Kahan's addition ([`Accumulator`]).
 /// Cost: 6 additions and multiplications.
 ///
 /// ```

@@ -7,7 +7,7 @@ use crate::real::{Real, coefficient};
 /// Largest size of any signal's range.
 pub(crate) const RANGE_LIMIT: f64 = 1e12;
 
-/// Range and rate of an output.
+/// Range and rate of an output. Bounds up to 1e12 in size, rates above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitConfig {
     /// Lowest output \[u\]; default -1e6.

@@ -9,7 +9,7 @@
 /// | Auto | PID + offset + compensator | integrates | ramps to `r` | runs |
 /// | Cascade | PID + offset + compensator | integrates | ramps to the remote set-point | runs |
 /// | Track | the track value | follows | as Off | runs |
-/// | Hold | held | follows | ramps to `r` | runs |
+/// | Hold | held where the sample of the change puts it | follows | ramps to `r` | runs |
 /// | Fallback | hold, substitute or ramp, as configured | follows | ramps to `r` | runs |
 ///
 /// "Follows": `I = u - pd - u_f - offset`, so that leaving the mode moves nothing. Range and rate limits hold in

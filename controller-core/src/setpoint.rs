@@ -5,7 +5,7 @@ use crate::error::{Checker, ConfigErrors, Param};
 use crate::limit::RANGE_LIMIT;
 use crate::real::{Real, coefficient};
 
-/// Range and rate of a set-point.
+/// Range and rate of a set-point. Bounds up to 1e12 in size, rates above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetpointConfig {
     /// Lowest set-point \[y\]; default -1e6.

@@ -35,12 +35,20 @@ impl Numbers {
     }
 }
 
-/// 1e-10 to order 4, 1e-7 to order 8, of the size of the terms that make up `C_u`: slow zeros that cannot move into the
-/// `y` path (right half plane, complex) give it coefficients far above 1, whose rounding no arrangement removes.
-fn tolerance(order: usize, block: &Block<f64>) -> f64 {
-    let terms: f64 = block.coefficients().u_lead.iter().map(|x| x.abs()).sum();
-    let size = if terms > 1.0 { terms } else { 1.0 };
-    size * if order <= 4 { 1e-10 } else { 1e-7 }
+/// 1e-10 to order 4, 1e-7 to order 8, of the size of the terms that make up `C_u`: zeros that cannot move into the `y`
+/// path (right half plane, complex) and are slow against a sample give its numerator coefficients of the size
+/// `prod(1 + 2|z|/ts)`, whose rounding no arrangement removes. The size is taken from the plant alone.
+fn tolerance(plant: &PlantFactors<'_>, ts: f64) -> f64 {
+    let stays = |&&(z1, z2): &&(f64, f64)| z1 < 0.0 || z2 != 0.0;
+    let size: f64 = plant
+        .zeros
+        .iter()
+        .filter(stays)
+        .map(|&(z1, z2)| 1.0 + 2.0 * z1.abs() / ts + 4.0 * z2.abs() / (ts * ts))
+        .product();
+    // Up to a size of 1e3 the figure itself is kept.
+    let factor = if size > 1e3 { size * 1e-3 } else { 1.0 };
+    factor * if plant.order() <= 4 { 1e-10 } else { 1e-7 }
 }
 
 /// Against the plants to 60 digits: orders 1 to 8, equal lags, complex pairs, integrators, zeros of every kind,
@@ -58,9 +66,9 @@ fn the_pair_cancels_on_the_golden_plants() {
             for (phase, exact) in PHASES.iter().zip(&plant.responses) {
                 let (c_u, c_y) = response(&block.coefficients(), *phase);
                 let residual = abs(add(c_u, mul(*exact, c_y)));
-                worst[order] = worst[order].max(residual / tolerance(order, &block));
+                worst[order] = worst[order].max(residual / tolerance(&plant.factors(), plant.ts));
                 assert!(
-                    residual <= tolerance(order, &block),
+                    residual <= tolerance(&plant.factors(), plant.ts),
                     "{} order {order}, filter {filter} samples, phase {phase}: {residual:e}",
                     plant.name
                 );
@@ -73,9 +81,8 @@ fn the_pair_cancels_on_the_golden_plants() {
     );
 }
 
-/// A randomised family with the state-space plant: 600 plants, orders 1 to 4 (1e-10) and 5 to 8 (1e-7), up to
-/// three zeros from 0.1 to 1000 samples on either side. (With seven zeros, four of them hundreds of
-/// samples slow, an eighth-order plant reaches 1.4e-6.)
+/// A randomised family with the state-space plant: 600 plants, orders 1 to 4 (1e-10) and 5 to 8 (1e-7), with
+/// up to seven zeros from 0.1 to 1000 samples on either side.
 #[test]
 fn the_pair_cancels_on_a_random_family() {
     let mut numbers = Numbers(20_260_917);
@@ -96,7 +103,7 @@ fn the_pair_cancels_on_a_random_family() {
                 left -= 1;
             }
         }
-        for _ in 0..numbers.index(order.min(4)) {
+        for _ in 0..numbers.index(order) {
             let size = ts / numbers.log(1e-3, 10.0);
             zeros.push((if numbers.next() < 0.5 { size } else { -size }, 0.0));
         }
@@ -113,11 +120,8 @@ fn the_pair_cancels_on_a_random_family() {
             let exact = sampled.frequency_response(phase);
             let (c_u, c_y) = response(&block.coefficients(), phase);
             let residual = abs(add(c_u, mul(exact, c_y)));
-            worst[order] = worst[order].max(residual / tolerance(order, &block));
-            assert!(
-                residual <= tolerance(order, &block),
-                "{plant:?} alpha {alpha} phase {phase}: {residual:e}"
-            );
+            worst[order] = worst[order].max(residual / tolerance(&plant, ts));
+            assert!(residual <= tolerance(&plant, ts), "{plant:?} alpha {alpha} phase {phase}: {residual:e}");
         }
     }
     println!(
@@ -223,6 +227,7 @@ fn tail<T: Real>(case: &dob_cases::DobCase, alpha: Option<f64>, ts: f64, latency
 /// Stable for `Ts/alpha` from 0.01 to 50 at latencies of 0, 0.5 and 1 sample, wherever the PI alone is.
 #[test]
 fn the_observer_never_destabilises_a_stable_loop() {
+    let mut loops = 0;
     for case in &dob_cases::CASES {
         for samples_per_dead_time in [2.0, 5.3, 20.0] {
             let ts = case.plant.dead_time / samples_per_dead_time;
@@ -235,6 +240,7 @@ fn the_observer_never_destabilises_a_stable_loop() {
                     );
                     continue;
                 }
+                loops += 1;
                 for ratio in [0.01, 0.1, 0.5, 1.0, 2.0, 4.0, 8.0, 20.0, 50.0] {
                     let alpha = ts / ratio;
                     let with = tail::<f64>(case, Some(alpha), ts, latency * ts);
@@ -248,6 +254,8 @@ fn the_observer_never_destabilises_a_stable_loop() {
             }
         }
     }
+    assert!(loops >= 40, "only {loops} of 54 loops are stable with the PI alone");
+    println!("{loops} of 54 loops are stable with the PI alone, and so with the observer");
     // The measure can fail: a late sample that the observer does not know of destabilises it.
     let case = &dob_cases::CASES[3];
     let ts = case.plant.dead_time / 2.0;

@@ -9,6 +9,8 @@ use crate::sample::FallbackConfig;
 use crate::setpoint::SetpointConfig;
 
 /// Parameters of a [`Controller`](crate::Controller); every part has a default, so that a plain PID needs only `pid`.
+/// Every range is finite: bounds up to 1e12 in size, the lower below the upper; `off_output` and a fallback's output lie
+/// within `limits`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControllerConfig {
     /// The PID.

@@ -42,7 +42,8 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
 
     /// Takes `state` over from the loop `old` without a bump: any parameter, limit, dead time or the sampling period
     /// may differ. In the first sample of the new law the output differs from the old one's by at most
-    /// `|dki|*ts*|e| + |d(high-frequency gain)|*|y[k]-y[k-1]|`, and by what a tighter limit takes away.
+    /// `|dki|*ts*|e| + |d(high-frequency gain)|*|y[k]-y[k-1]|` (and likewise for `r`), by what a tighter limit takes away,
+    /// and by what another range or rate makes of the set-point and the offset.
     ///
     /// The lags and the delay line are signals and are kept; the integral term absorbs the rest. With another
     /// sampling period the line's samples mean other times: the compensator then settles, its last output going

@@ -15,6 +15,8 @@ use crate::setpoint::Setpoint;
 /// A whole control loop for one sampling period: PID, compensator `C`, limits, set-point, anti-windup, modes, bad
 /// samples, alarms, in the order of the [module](crate::controller).
 ///
+/// Difference equation: `v[k] = I[k] + pd[k] + offset[k] + u_f[k]`, `u[k] = limit(v[k])`, the parts as their blocks say.
+/// Source: the signal flow of both papers (eqs (8)-(10) and fig. 2 of Tena et al. 2022; section 4 of Vrančić & Huba 2021).
 /// A step is total: for every bit pattern of every input the output is finite and in its range, the state finite.
 /// Cost: its blocks plus about 40 compares and selects; no loop but those of the compensator's fixed order, so that the
 /// bound depends on the law alone. The first good sample of a zeroed state also fills the delay line.

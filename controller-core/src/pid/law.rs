@@ -23,7 +23,8 @@ use crate::real::{Real, coefficient};
 /// `tf = 0` is a static gain: `g = 1`, `H = P`. All three sums are compensated ([`Accumulator`]).
 ///
 /// Inputs must be finite: a bare law does not check them, [`Controller`](crate::Controller) does.
-/// Cost: 33 additions, multiplications and subtractions, no division, no branch.
+/// Cost: 29 additions, subtractions and multiplications, no division, no branch.
+/// Source: eq. (4) of Vrančić & Huba 2021; Tustin's rule for the filtered path as that chapter's experiments use it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pid<T> {
     ki_now: T,
@@ -183,7 +184,8 @@ impl<T: Real> Pid<T> {
         self.ki_now + self.ki_before
     }
 
-    /// Largest size of `|pd|` per unit of signal: `|P_b| + |P_1| + 2|H_r - ..|`, for overflow checks.
+    /// Bound of `|pd|` and of an increment per unit of signal, for overflow checks: `|P|` times a lag, `2|H|` times a
+    /// difference from it, for both inputs.
     pub(crate) fn bound(&self) -> f64 {
         let size = |x: T| x.to_f64().abs();
         size(self.p_r)
