@@ -2,10 +2,11 @@
 
 mod arguments;
 mod input;
+mod usage;
 
 use crate::demo;
 use crate::output::{
-    FileTarget, Problem, Severity, Source, error_json, render, run_json, run_table, write_csv,
+    FileTarget, Problem, Severity, Source, error_json, is_same_file, render, run_json, run_table, write_csv,
 };
 use crate::scenario::{Fault, Read, Scenario, read};
 use crate::simulate::{Precision, RunOptions, RunResult, run};
@@ -52,17 +53,18 @@ pub fn main() -> ExitCode {
     let list: Vec<OsString> = std::env::args_os().collect();
     let arguments = match Arguments::try_parse_from(&list) {
         Ok(arguments) => arguments,
-        Err(error) => return usage(&error, list.iter().any(|a| a == "--json")),
+        Err(error) => return wrong(&error, list.iter().any(|a| a == "--json")),
     };
-    let json = match &arguments.command {
-        None => false,
-        Some(Command::Run(run)) => run.json,
-        Some(Command::Demo(demo)) => demo.json,
-    };
+    let json = arguments.json
+        || match &arguments.command {
+            None => false,
+            Some(Command::Run(run)) => run.json,
+            Some(Command::Demo(demo)) => demo.json,
+        };
     let done = match arguments.command {
-        None => run_demo(&DemoArguments::default()),
-        Some(Command::Demo(arguments)) => run_demo(&arguments),
-        Some(Command::Run(arguments)) => run_file(&arguments),
+        None => run_demo(&DemoArguments { json, ..DemoArguments::default() }),
+        Some(Command::Demo(arguments)) => run_demo(&DemoArguments { json, ..arguments }),
+        Some(Command::Run(arguments)) => run_file(&RunArguments { json, ..arguments }),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -71,13 +73,11 @@ pub fn main() -> ExitCode {
 }
 
 /// Help and version are no mistakes; everything else is, and goes to where the caller looks for it.
-fn usage(error: &clap::Error, json: bool) -> ExitCode {
-    if json && error.use_stderr() {
-        let text = error.to_string();
-        let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-        let message = lines.next().unwrap_or("wrong arguments").trim_start_matches("error: ");
-        let problem = Problem::new("usage", message).help("see `controller-sim --help`");
-        return report(&Failure::Other(problem, EXIT_INPUT), true);
+fn wrong(error: &clap::Error, json: bool) -> ExitCode {
+    match (usage::better(error), json && error.use_stderr()) {
+        (Some(problem), json) => return report(&Failure::Other(problem, EXIT_INPUT), json),
+        (None, true) => return report(&Failure::Other(usage::plain(error), EXIT_INPUT), true),
+        (None, false) => {}
     }
     // Nothing to be done when even this cannot be printed.
     let _ = error.print();
@@ -150,7 +150,7 @@ fn run_file(arguments: &RunArguments) -> Result<(), Failure> {
         scenario.substeps = usize::from(substeps);
     }
     let csv = match &arguments.csv {
-        Some(path) => Some(csv_target(path, arguments.force, &scenario)?),
+        Some(path) => Some(csv_target(path, arguments, &scenario)?),
         None => None,
     };
     let result = simulate(&scenario, RunOptions { precision, trace: csv.is_some() })?;
@@ -166,7 +166,17 @@ fn run_file(arguments: &RunArguments) -> Result<(), Failure> {
 }
 
 /// Everything that can be wrong with the CSV file is found before the run, not after it.
-fn csv_target(path: &Path, force: bool, scenario: &Scenario) -> Result<FileTarget, Failure> {
+fn csv_target(path: &Path, arguments: &RunArguments, scenario: &Scenario) -> Result<FileTarget, Failure> {
+    if path.as_os_str() == "-" {
+        let problem = Problem::new("file", "`--csv -` is not possible: the standard output has the table");
+        return Err(problem.help("give a file: `--csv my.csv`").into());
+    }
+    let from =
+        if arguments.scenario.as_os_str() == "-" { Path::new("/dev/stdin") } else { &arguments.scenario };
+    if is_same_file(path, from) {
+        let message = format!("`{}` is the scenario itself and is not overwritten", path.display());
+        return Err(Problem::new("file", message).help("give the CSV file another name").into());
+    }
     #[allow(clippy::cast_precision_loss)] // a bound
     let samples = scenario.duration / scenario.ts * scenario.controllers.len() as f64;
     if samples > MOST_KEPT {
@@ -175,7 +185,7 @@ fn csv_target(path: &Path, force: bool, scenario: &Scenario) -> Result<FileTarge
         let problem = Problem::new("too-large", message);
         return Err(problem.help("shorten the run, or leave `--csv` out: the metrics need no memory").into());
     }
-    Ok(FileTarget::new(path, force)?)
+    Ok(FileTarget::new(path, arguments.force)?)
 }
 
 fn read_scenario(source: Source<'_>, precision: Precision) -> Result<Read, Failure> {

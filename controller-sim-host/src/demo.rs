@@ -11,7 +11,7 @@ pub const NAME: &str = "demo";
 
 /// What to do after the demo.
 pub const TRY_NEXT: &str = "
-Try next:
+Try next (in the source tree write `cargo sim` for `controller-sim`):
   controller-sim demo --save my.toml          write this scenario to a file, to change it
   controller-sim run my.toml --csv my.csv     run it and keep every sample
   controller-sim run --help                   everything else, with examples

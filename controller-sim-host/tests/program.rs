@@ -66,7 +66,9 @@ fn without_arguments_the_demo_runs() {
     let output = folder.run(&[]);
     assert_eq!(output.status.code(), Some(0));
     let shown = text(&output.stdout);
-    for part in ["set-point at 0 s", "disturbance at 10 s", "whole run", "DE-MOMI", "IAE", "Try next:"] {
+    for part in
+        ["set-point at 0 s", "disturbance at 10 s", "whole run", "DE-MOMI", "IAE", "Try next (", "cargo sim"]
+    {
         assert!(shown.contains(part), "`{part}` is not in:\n{shown}");
     }
     assert!(shown.lines().all(|line| line.chars().count() <= 100 && line.trim_end() == line), "{shown}");
@@ -160,7 +162,7 @@ fn files_that_cannot_be_read() {
     let folder = Folder::new("unreadable");
     fs::write(folder.0.join("latin.toml"), b"version = 1\n# \xe9\n").expect("writable");
     for (name, word) in
-        [("none.toml", "cannot read `none.toml`"), ("latin.toml", "line 2"), (".", "cannot read")]
+        [("none.toml", "cannot read `none.toml`"), ("latin.toml", "line 2"), (".", "`.` is a directory")]
     {
         let output = folder.run(&["run", name]);
         assert_eq!(output.status.code(), Some(2), "{name}");
@@ -237,6 +239,93 @@ fn a_csv_file_has_every_sample_and_is_not_overwritten() {
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(folder.read("out.csv"), csv);
     assert_eq!(folder.names(), ["out.csv", "s.toml"], "no other file is left");
+}
+
+/// Whatever name it goes by, and even with `--force`.
+#[test]
+fn a_scenario_is_not_overwritten_by_its_own_csv_file() {
+    let folder = Folder::new("csv-itself");
+    folder.write("s.toml", BASE);
+    fs::create_dir_all(folder.0.join("sub")).expect("a folder");
+    let mut names = vec!["s.toml", "./s.toml", "sub/../s.toml"];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("s.toml", folder.0.join("link")).expect("a link");
+        fs::hard_link(folder.0.join("s.toml"), folder.0.join("hard")).expect("a link");
+        names.extend(["link", "hard"]);
+    }
+    for (scenario, csv) in names.iter().flat_map(|a| names.iter().map(move |b| (a, b))) {
+        let output = folder.run(&["run", scenario, "--csv", csv, "--force"]);
+        assert_eq!((output.status.code(), text(&output.stdout)), (Some(2), ""), "{scenario} {csv}");
+        assert!(text(&output.stderr).contains("is the scenario itself"), "{}", text(&output.stderr));
+        assert_eq!(folder.read("s.toml"), BASE);
+    }
+    #[cfg(target_os = "linux")]
+    {
+        let input = fs::File::open(folder.0.join("s.toml")).expect("readable");
+        let mut command = folder.command(&["run", "-", "--csv", "s.toml", "--force"]);
+        let output = command.stdin(input).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(2));
+        assert_eq!(folder.read("s.toml"), BASE);
+    }
+    let output = folder.run(&["run", "s.toml", "--csv", "-"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("give a file: `--csv my.csv`"), "{}", text(&output.stderr));
+}
+
+/// What people try first, and what they are told.
+#[test]
+fn wrong_arguments_have_a_help() {
+    let folder = Folder::new("usage-help");
+    folder.write("s.toml", BASE);
+    folder.write("my file", BASE);
+    for (arguments, part) in [
+        (&["s.toml"][..], "controller-sim run s.toml"),
+        (&["none.toml"], "controller-sim run none.toml"),
+        (&["my file"], "controller-sim run 'my file'"),
+        (&["design"], "the command `design` is not in this version"),
+        (&["reproduce", "--json"], "the command `reproduce` is not in this version"),
+        (&["analyze", "s.toml"], "not in this version"),
+        (&["run", "s.toml", "--force"], "--csv <FILE>"),
+    ] {
+        let output = folder.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let shown = [text(&output.stdout), text(&output.stderr)].concat();
+        assert!(shown.contains(part), "{arguments:?}: {shown}");
+    }
+    let output = folder.run(&["run", "--json", "--force", "s.toml"]);
+    assert!(json(&output)["error"]["message"].as_str().is_some_and(|m| m.contains("--csv")), "{output:?}");
+    let output = folder.run(&["--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(json(&output)["scenario"], "demo");
+}
+
+/// A pipe without a writer: the program must not wait for one.
+#[cfg(unix)]
+#[test]
+fn a_pipe_by_name_is_no_scenario() {
+    let folder = Folder::new("pipe");
+    let made = Command::new("mkfifo").arg(folder.0.join("p")).status();
+    if made.is_ok_and(|status| status.success()) {
+        let output = folder.run(&["run", "p"]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(text(&output.stderr).contains("`p` is not a regular file"), "{}", text(&output.stderr));
+    }
+}
+
+/// What is to be known of a run before its figures are trusted.
+#[test]
+fn remarks_on_a_run_are_shown() {
+    let folder = Folder::new("remarks");
+    let tight = BASE.replacen("limits = { lo = -10.0, hi = 10.0 }", "limits = { lo = -10.0, hi = 0.5 }", 1);
+    folder.write("s.toml", &tight);
+    let output = folder.run(&["run", "s.toml"]);
+    let shown = text(&output.stdout);
+    assert!(shown.contains("\nremarks:\n  PID: at an output limit for "), "{shown}");
+    let run = json(&folder.run(&["run", "s.toml", "--json"]));
+    let warning = &run["warnings"][0];
+    assert_eq!((&warning["line"], &warning["code"]), (&Value::Null, &"run".into()));
+    assert!(warning["message"].as_str().is_some_and(|m| m.starts_with("PID: at an output limit")), "{run}");
 }
 
 /// The check comes before the run: nothing is computed for a file that cannot be written.

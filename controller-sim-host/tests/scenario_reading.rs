@@ -3,12 +3,13 @@
 use controller_core::plant_model::PlantModel;
 use controller_core::{
     Action, AlarmConfig, AntiWindupConfig, ControllerConfig, EstimatorConfig, FallbackAction, FallbackConfig,
-    FallbackReturn, IntegralRule, LimitConfig, Mode, ObserverConfig, PidConfig, SetpointConfig,
+    FallbackReturn, IntegralRule, LimitConfig, Mode, ObserverConfig, PidConfig, SetpointConfig, Status,
 };
 use controller_design::model::parse;
 use controller_sim_host::demo;
 use controller_sim_host::scenario::{
-    Actuator, Change, CompensatorSpec, ControllerSpec, Disturbance, Event, Initial, Noise, Scenario, read,
+    Actuator, Change, CompensatorSpec, ControllerSpec, Disturbance, Event, Initial, Noise, Scenario, code,
+    read,
 };
 use controller_sim_host::simulate::Precision;
 
@@ -206,4 +207,35 @@ fn the_demo_is_that_of_the_chapter() {
         tfd: 0.059_969_426_55,
     };
     assert_eq!(demo.controllers[2].compensator, CompensatorSpec::Estimator(model));
+}
+
+/// The description names every status bit with its value, and every code.
+#[test]
+fn the_description_has_every_status_bit_and_code() {
+    let format = include_str!("../src/scenario/format.md");
+    for (bit, name) in Status::NAMES {
+        let row = format!("| {} | {} | {name} |", bit.bits().trailing_zeros(), bit.bits());
+        assert!(format.contains(&row), "`{row}` is missing");
+    }
+    for code in [
+        code::SYNTAX,
+        code::UNKNOWN_KEY,
+        code::MISSING_KEY,
+        code::WRONG_TYPE,
+        code::OUT_OF_RANGE,
+        code::UNKNOWN_CHOICE,
+        code::DUPLICATE,
+        code::CONFLICT,
+        code::EXPRESSION,
+        code::UNKNOWN_NAME,
+        code::NOT_SUPPORTED,
+        code::TOO_LARGE,
+        code::FAST_FILTER,
+        code::SIGN,
+        code::CLAMPED,
+        code::OUT_OF_MEASUREMENT,
+        code::NO_EFFECT,
+    ] {
+        assert!(format.contains(&format!("`{code}`")), "`{code}` is missing");
+    }
 }

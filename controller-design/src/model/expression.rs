@@ -3,6 +3,8 @@
 mod delay;
 mod names;
 mod parser;
+mod repair;
+mod report;
 mod token;
 
 use std::vec;

@@ -12,6 +12,8 @@ Examples:
   controller-sim run my.toml --precision f32      as the target computes
   controller-sim run my.toml --json               for a program
 
+In the source tree write `cargo sim` for `controller-sim`.
+
 Exit codes: 0 done, 2 bad input, 3 refused, 1 anything else.";
 
 const RUN_EXAMPLES: &str = "\
@@ -31,6 +33,9 @@ Examples:
 #[derive(Debug, Parser)]
 #[command(name = "controller-sim", version, after_help = EXAMPLES)]
 pub(super) struct Arguments {
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    pub(super) json: bool,
     #[command(subcommand)]
     pub(super) command: Option<Command>,
 }
@@ -58,7 +63,7 @@ pub(super) struct RunArguments {
     #[arg(long, value_enum, default_value_t)]
     pub(super) precision: Number,
     /// Replace the CSV file if it exists
-    #[arg(long)]
+    #[arg(long, requires = "csv")]
     pub(super) force: bool,
     /// Steps between two samples for the metrics, 1 to 1000; overrides the scenario
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]

@@ -1,7 +1,7 @@
 //! Reading the text of a scenario from a file or the standard input.
 
 use crate::output::Problem;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -13,7 +13,9 @@ pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
     let (name, bytes) = if path.as_os_str() == "-" {
         ("<stdin>".to_owned(), read_all(io::stdin().lock()))
     } else {
-        (path.display().to_string(), File::open(path).and_then(read_all))
+        let name = path.display().to_string();
+        check_kind(path, &name)?;
+        (name, File::open(path).and_then(read_all))
     };
     let bytes = bytes.map_err(|error| {
         let problem = Problem::new("file", format!("cannot read `{name}`: {error}"));
@@ -37,6 +39,20 @@ pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
             Err(Problem::new("file", message).help("save it as UTF-8"))
         }
     }
+}
+
+/// A directory has no text, and opening a pipe waits for a writer that may never come.
+fn check_kind(path: &Path, name: &str) -> Result<(), Problem> {
+    let Ok(found) = fs::metadata(path) else { return Ok(()) };
+    if found.is_dir() {
+        let problem = Problem::new("file", format!("`{name}` is a directory"));
+        return Err(problem.help("give a scenario file in it"));
+    }
+    if !found.is_file() {
+        let problem = Problem::new("file", format!("`{name}` is not a regular file"));
+        return Err(problem.help("to read from a pipe: `controller-sim run -`"));
+    }
+    Ok(())
 }
 
 fn read_all(from: impl Read) -> io::Result<Vec<u8>> {

@@ -1,9 +1,11 @@
 //! JSON for programs: one object, its keys in a fixed order, numbers finite or null.
 
+use super::table::remarks;
 use super::{Problem, Source, precision_name};
 use crate::scenario::{Fault, Scenario};
 use crate::simulate::{EventKind, Metrics, Precision, RunResult};
 use serde::Serialize;
+use std::borrow::Cow;
 
 #[derive(Serialize)]
 struct Run<'a> {
@@ -54,12 +56,12 @@ struct Error<'a> {
 
 #[derive(Serialize)]
 struct Place<'a> {
-    line: usize,
-    column: usize,
-    length: usize,
-    text: String,
+    line: Option<usize>,
+    column: Option<usize>,
+    length: Option<usize>,
+    text: Option<String>,
     code: &'a str,
-    message: &'a str,
+    message: Cow<'a, str>,
     help: Option<&'a str>,
 }
 
@@ -80,7 +82,7 @@ pub(super) fn kind_name(kind: EventKind) -> &'static str {
 }
 
 /// The result of a run as JSON: `scenario` (the name of `source`), `ts`, `precision`, `controllers` and
-/// `warnings`.
+/// `warnings` (those of the scenario with their places, then the remarks on the run with the code `run` and no place).
 #[must_use]
 pub fn run_json(
     source: Source<'_>,
@@ -102,12 +104,22 @@ pub fn run_json(
             .collect(),
         total: Indices::from(&controller.total),
     });
+    // What is said of the run has no place in the scenario.
+    let remarks = remarks(result).map(|(name, text)| Place {
+        line: None,
+        column: None,
+        length: None,
+        text: None,
+        code: "run",
+        message: Cow::Owned(format!("{name}: {text}")),
+        help: None,
+    });
     text(&Run {
         scenario: source.name,
         ts: scenario.ts,
         precision: precision_name(precision),
         controllers: controllers.collect(),
-        warnings: places(source.text, warnings),
+        warnings: places(source.text, warnings).into_iter().chain(remarks).collect(),
     })
 }
 
@@ -140,12 +152,12 @@ fn places<'a>(text: &str, faults: &'a [Fault]) -> Vec<Place<'a>> {
     let one = |fault: &'a Fault| {
         let place = fault.place(text);
         Place {
-            line: place.line,
-            column: place.column,
-            length: place.length,
-            text: place.text,
+            line: Some(place.line),
+            column: Some(place.column),
+            length: Some(place.length),
+            text: Some(place.text),
             code: fault.code,
-            message: &fault.message,
+            message: Cow::Borrowed(&*fault.message),
             help: fault.help.as_deref(),
         }
     };

@@ -9,7 +9,7 @@ mod table;
 
 pub use csv::write_csv;
 pub use faults::{Problem, Severity, render};
-pub use file::{FileError, FileTarget};
+pub use file::{FileError, FileTarget, is_same_file};
 pub use json::{error_json, run_json};
 pub use table::run_table;
 

@@ -48,7 +48,18 @@ pub fn run_table(scenario: &Scenario, precision: Precision, result: &RunResult) 
     }
     text.push_str("\nIAE, IE [y s], ISE [y^2 s], ITAE [y s^2], e_max [y], TV [u]");
     text.push_str(if result.controllers.len() > 1 { "; * is the best of its column\n" } else { "\n" });
+    text.push_str("IE is the sum over the samples, the others are of the error between the samples, too\n");
+    let remarks: Vec<String> = remarks(result).map(|(name, text)| format!("  {name}: {text}\n")).collect();
+    if !remarks.is_empty() {
+        text.push_str("\nremarks:\n");
+        text.extend(remarks);
+    }
     text
+}
+
+/// Every remark on the run with the name of its controller.
+pub(super) fn remarks(result: &RunResult) -> impl Iterator<Item = (&str, &str)> {
+    result.controllers.iter().flat_map(|c| c.remarks.iter().map(|remark| (&*c.name, &*remark.text)))
 }
 
 /// A line, without spaces at its end.
@@ -125,21 +136,21 @@ fn best(block: &Block<'_>) -> [Option<String>; 6] {
 
 /// Four significant digits.
 fn format_number(x: f64) -> String {
-    let size = x.abs();
     if !x.is_finite() {
         return "-".to_owned();
     }
     if x == 0.0 {
         return "0".to_owned();
     }
-    if !(1e-4..1e6).contains(&size) {
+    // The exponent after the rounding, which may carry into the next power of ten.
+    let rounded = format!("{x:.3e}");
+    let exponent: i32 = rounded.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    match exponent {
+        -4..6 => format!("{x:.digits$}", digits = usize::try_from(3 - exponent).unwrap_or(0)),
+        -99..100 => rounded,
         // An exponent of three digits takes the place of one.
-        return if (1e-99..1e99).contains(&size) { format!("{x:.3e}") } else { format!("{x:.2e}") };
+        _ => format!("{x:.2e}"),
     }
-    // The rounding may carry into the next power of ten; that costs a digit, not correctness.
-    let before = size.log10().floor() as i32 + 1;
-    let digits = usize::try_from(4 - before).unwrap_or(0);
-    format!("{x:.digits$}")
 }
 
 #[cfg(test)]
@@ -151,6 +162,8 @@ mod tests {
         let numbers = [0.53204, 12345.6, 1.0, 0.00012346, -2.5, 1e-9, 0.0, f64::NAN];
         let shown = numbers.map(format_number);
         assert_eq!(shown, ["0.5320", "12346", "1.000", "0.0001235", "-2.500", "1.000e-9", "0", "-"]);
+        let carried = [0.99996, 9.9996, 99.996, 0.000_099_999, 999_999.9, -0.099_999_9].map(format_number);
+        assert_eq!(carried, ["1.000", "10.00", "100.0", "0.0001000", "1.000e6", "-0.1000"]);
         for x in [-1e300, -1.2345e-300, 999_999.9, -0.000_999_99] {
             assert!(format_number(x).len() + 1 < CELL, "{x}");
         }

@@ -2,6 +2,7 @@
 
 use super::expression;
 use super::fault::{Fault, code};
+use super::number::Allowed;
 use super::places::Places;
 use super::sections::take;
 use super::table::Table;
@@ -100,7 +101,7 @@ fn estimator(part: Table<'_>, config: &mut EstimatorConfig, places: &mut Places)
     take(&part, "a1", Param::ModelPoles, places, &mut config.a1);
     // Both coefficients make the poles, and the core has one name for them.
     if let Some(span) = part.span("a2") {
-        match part.number("a2") {
+        match part.number("a2", Some(Allowed::new(0.0, 1e24, "s^2"))) {
             Some(a2) => config.a2 = a2.value,
             None => places.silence(&[Param::ModelPoles]),
         }

@@ -8,9 +8,18 @@ use super::suggest::closest;
 use super::table::{Located, Table, shortened};
 use super::trial::{self, Context};
 use super::{Change, Disturbance, Event};
+use std::ops::Range;
 
 /// Most samples that one event makes bad or loses.
 const MOST_SAMPLES: u64 = 1_000_000_000;
+
+/// An event and where its changes are written.
+#[derive(Debug)]
+pub(super) struct Placed {
+    pub(super) event: Event,
+    /// One for each change.
+    pub(super) spans: Vec<Range<usize>>,
+}
 
 /// Reads all events; `drafts` are the controllers as they start and end up as the events leave them.
 /// `duration` \[s\] is the length of the run, when it is known.
@@ -19,7 +28,7 @@ pub(super) fn read(
     drafts: &mut [Draft],
     duration: Option<f64>,
     context: &Context,
-) -> Vec<Event> {
+) -> Vec<Placed> {
     let mut tables: Vec<(Option<f64>, Table<'_>)> =
         root.tables("event").into_iter().map(|table| (read_time(&table, duration), table)).collect();
     // Stable: of two events at one time the one written first comes first.
@@ -37,25 +46,25 @@ pub(super) fn read(
             let help = "write what happens, for example `setpoint = 1.0` or `disturbance = 1.0`";
             table.log.fault(Fault::new(code::MISSING_KEY, table.place.clone(), message).help(help));
         }
-        changes.sort_by_key(|(start, _)| *start);
+        changes.sort_by_key(|(span, _)| span.start);
         table.finish();
         if let Some(at) = at {
-            let changes = changes.into_iter().map(|(_, change)| change).collect();
-            events.push(Event { at, changes, controller: controller.flatten() });
+            let (spans, changes) = changes.into_iter().unzip();
+            events.push(Placed { event: Event { at, changes, controller: controller.flatten() }, spans });
         }
     }
     events
 }
 
-/// Where a key is written, and what it changes.
-type Placed = (usize, Change);
+/// Where a value is written, and what it changes.
+type PlacedChange = (Range<usize>, Change);
 
 fn read_time(table: &Table<'_>, duration: Option<f64>) -> Option<f64> {
     if table.span("at").is_none() {
         table.missing("at", "when it happens, in seconds: `at = 10.0`");
     }
-    let at = table.number("at")?;
     let end = duration.unwrap_or(1e18);
+    let at = table.number("at", Some(Allowed::new(0.0, end, "s")))?;
     if at.value >= 0.0 && at.value < end {
         // No sign on a zero: it would be printed.
         return Some(at.value.abs());
@@ -116,8 +125,8 @@ fn read_parameters(
     drafts: &mut [Draft],
     who: &[usize],
     context: &Context,
-) -> Option<Placed> {
-    let start = PARAMETER_KEYS.iter().filter_map(|key| table.key_span(key)).map(|span| span.start).min()?;
+) -> Option<PlacedChange> {
+    let first = PARAMETER_KEYS.iter().filter_map(|key| table.key_span(key)).min_by_key(|span| span.start)?;
     let mut list = Vec::new();
     for &index in who {
         let Some(draft) = drafts.get_mut(index) else { continue };
@@ -126,15 +135,15 @@ fn read_parameters(
         trial::check(draft, context, table.log, before);
         list.push((index, draft.spec()));
     }
-    Some((start, Change::Parameters(list)))
+    Some((first, Change::Parameters(list)))
 }
 
 /// Everything but parameters.
-fn read_changes(table: &Table<'_>) -> Vec<Placed> {
-    let mut changes: Vec<Placed> = Vec::new();
+fn read_changes(table: &Table<'_>) -> Vec<PlacedChange> {
+    let mut changes: Vec<PlacedChange> = Vec::new();
     let mut add = |key: &'static str, change: Option<Change>| {
-        if let (Some(span), Some(change)) = (table.key_span(key), change) {
-            changes.push((span.start, change));
+        if let (Some(span), Some(change)) = (table.span(key), change) {
+            changes.push((span, change));
         }
     };
     add("setpoint", read_setpoint(table));

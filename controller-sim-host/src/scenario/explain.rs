@@ -28,10 +28,11 @@ pub(super) fn explain(
     let subject = subject(error, setting, draft.has_converted_gains(), &span, log);
     match error.reason {
         Reason::NotFinite => {
-            let message = format!("{subject} is not a finite number");
+            let allowed = range_text(error.min, error.max, "");
+            let message = format!("{subject} is not a finite number; allowed: {allowed}");
             Fault::new(code::OUT_OF_RANGE, span, message)
         }
-        Reason::Inverted => inverted(error, draft, subject, span),
+        Reason::Inverted => inverted(error, draft, subject, span, log),
         Reason::NeedsFilter => needs_filter(context, subject, span),
         Reason::SignMismatch => sign(error, draft, spec, span),
         _ if error.param == Param::Overflow => overflow(error, draft),
@@ -106,6 +107,17 @@ fn out_of_range(error: &ConfigError, spec: &ControllerSpec, subject: String, spa
                 fault = fault.help(reason);
             }
         }
+        Param::ModelGain => {
+            let (least, most) = if error.min > 0.0 { (error.min, error.max) } else { (1e-15, error.max) };
+            let size = format!("size {} to {}", show_short(least), show_short(most));
+            fault.message = if error.value == 0.0 {
+                let name = subject.split(" = ").next().unwrap_or(&subject).trim_start_matches('`');
+                format!("`{name}` must not be 0 ({size})")
+            } else {
+                format!("{subject} is out of range; allowed: {size}")
+            };
+            return fault;
+        }
         Param::FilterOrder => {
             fault = fault.help("leave `order` out to have the smallest one that the model allows");
         }
@@ -117,7 +129,7 @@ fn out_of_range(error: &ConfigError, spec: &ControllerSpec, subject: String, spa
 
 /// A lower bound that is not below the upper one. The core reports the lower one and, as the largest allowed
 /// value, the upper one; of alarms, the lower of two levels.
-fn inverted(error: &ConfigError, draft: &Draft, subject: String, span: Range<usize>) -> Fault {
+fn inverted(error: &ConfigError, draft: &Draft, subject: String, span: Range<usize>, log: &Log<'_>) -> Fault {
     let other = match error.param {
         Param::OutputLo => Param::OutputHi,
         Param::SetpointLo => Param::SetpointHi,
@@ -125,7 +137,12 @@ fn inverted(error: &ConfigError, draft: &Draft, subject: String, span: Range<usi
         Param::OffsetLo => Param::OffsetHi,
         _ => return alarms_inverted(error, subject, span),
     };
-    let upper = show_short(error.max);
+    // As it is written, when it is.
+    let written = draft.places.of(other).map(|setting| log.slice(&setting.span));
+    let upper = match written {
+        Some(written) if written.parse::<f64>().is_ok() => written.to_owned(),
+        _ => show_short(error.max),
+    };
     let message = format!(
         "{subject} must be below `{} = {upper}`",
         draft.places.of(other).map_or(other.name(), |s| &s.name)

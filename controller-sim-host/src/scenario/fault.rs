@@ -13,8 +13,10 @@ pub mod code {
     pub const MISSING_KEY: &str = "missing-key";
     /// A value of another type than the key takes.
     pub const WRONG_TYPE: &str = "wrong-type";
-    /// A number outside its range, a text that is none of those allowed.
+    /// A number outside its range, a text too long or too short.
     pub const OUT_OF_RANGE: &str = "out-of-range";
+    /// A text that is none of those allowed.
+    pub const UNKNOWN_CHOICE: &str = "unknown-choice";
     /// Something that may be there once is there twice.
     pub const DUPLICATE: &str = "duplicate";
     /// Two values that exclude each other.
@@ -31,8 +33,12 @@ pub mod code {
     pub const FAST_FILTER: &str = "fast-filter";
     /// Warning: signs that make the loop drive away from the set-point.
     pub const SIGN: &str = "sign";
-    /// Warning: a set-point outside the range of a controller.
+    /// Warning: a set-point or an output outside the range of a controller, which moves it there.
     pub const CLAMPED: &str = "clamped";
+    /// Warning: a set-point outside the range of valid measurements.
+    pub const OUT_OF_MEASUREMENT: &str = "out-of-measurement";
+    /// Warning: a change without any effect.
+    pub const NO_EFFECT: &str = "no-effect";
 }
 
 /// One fault, or one warning, of a scenario.

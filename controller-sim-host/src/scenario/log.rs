@@ -16,11 +16,13 @@ pub(super) struct Log<'a> {
     pub(super) text: &'a str,
     faults: RefCell<Vec<Fault>>,
     warnings: RefCell<Vec<Fault>>,
+    /// Keys of the run, such as `ts`, that the text has nowhere above its first table.
+    absent: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Log<'a> {
     pub(super) fn new(text: &'a str) -> Self {
-        Self { text, faults: RefCell::default(), warnings: RefCell::default() }
+        Self { text, faults: RefCell::default(), warnings: RefCell::default(), absent: RefCell::default() }
     }
 
     /// Adds a fault; a second equal one is dropped.
@@ -33,9 +35,32 @@ impl<'a> Log<'a> {
         push(&self.warnings, warning);
     }
 
+    /// `key` belongs above the first table and is not there.
+    pub(super) fn absent_above(&self, key: &'static str) {
+        self.absent.borrow_mut().push(key);
+    }
+
+    /// Whether `key`, found in a table, was meant to stand above the first one. Asked once for each key.
+    pub(super) fn is_misplaced(&self, key: &str) -> bool {
+        let mut absent = self.absent.borrow_mut();
+        let count = absent.len();
+        absent.retain(|other| *other != key);
+        absent.len() < count
+    }
+
+    /// Whether `key` is still wanted above the first table.
+    pub(super) fn is_wanted_above(&self, key: &str) -> bool {
+        self.absent.borrow().contains(&key)
+    }
+
     /// Number of faults so far.
     pub(super) fn count(&self) -> usize {
         self.faults.borrow().len()
+    }
+
+    /// Whether a warning says `message` already.
+    pub(super) fn has_warning(&self, message: &str) -> bool {
+        self.warnings.borrow().iter().any(|warning| warning.message == message)
     }
 
     /// Whether no more faults are taken.

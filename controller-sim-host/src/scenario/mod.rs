@@ -11,9 +11,9 @@ mod log;
 mod number;
 mod pid;
 mod places;
+mod ranges;
 mod read;
 mod sections;
-mod start;
 mod suggest;
 mod syntax;
 mod table;
@@ -126,7 +126,7 @@ pub enum Change {
     Parameters(Vec<(usize, ControllerSpec)>),
 }
 
-/// A disturbance at the plant input. Each adds to those before it.
+/// A disturbance at the plant input. The steady level is that of the last step; ramps and pulses add to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Disturbance {
     /// The steady level becomes this \[u\] (ramps and pulses add to it).

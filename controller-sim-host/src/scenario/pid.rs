@@ -82,7 +82,10 @@ impl PidDraft {
                 ),
             );
         } else if form != Form::Parallel && table.span("k").is_none() {
-            table.missing("k", "the gain, for example `k = 1.0`");
+            // With the gains of another form one fault says it.
+            if PARALLEL_KEYS.into_iter().all(|key| table.span(key).is_none()) {
+                table.missing("k", "the gain, for example `k = 1.0`");
+            }
             places.silence(&GAINS);
         }
         draft.read_rest(table, places);
@@ -115,7 +118,7 @@ impl PidDraft {
             let value = match key {
                 "ti" => read_integral_time(table),
                 "td" => table.number_in(key, Allowed::new(0.0, 1e12, "s")),
-                _ => table.number(key),
+                _ => table.number(key, Some(Allowed::new(-1e15, 1e15, ""))),
             };
             if let Some(value) = value {
                 self.values[index] = value.value;

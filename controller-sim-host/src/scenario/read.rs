@@ -5,7 +5,8 @@ use super::events;
 use super::expression;
 use super::fault::{Fault, code};
 use super::log::{Log, MOST as MOST_FAULTS};
-use super::number::{Allowed, show, show_short};
+use super::number::{Allowed, show_short};
+use super::ranges;
 use super::sections::signal;
 use super::syntax;
 use super::table::{Located, Table};
@@ -64,6 +65,12 @@ pub struct Read {
 pub fn read(text: &str, precision: Precision) -> Result<Read, Vec<Fault>> {
     let (document, errors) = DeTable::parse_recoverable(text);
     let syntax = syntax::faults(text, &errors);
+    if syntax::is_hopeless(&syntax) {
+        return Err(syntax);
+    }
+    if let Some(fault) = nothing_in(text, document.get_ref(), &syntax) {
+        return Err(vec![fault]);
+    }
     let log = Log::new(text);
     let scenario = read_root(Table::root(document.get_ref(), &log), precision);
     let (faults, warnings) = log.finish();
@@ -80,6 +87,16 @@ pub fn read(text: &str, precision: Precision) -> Result<Read, Vec<Fault>> {
     }
 }
 
+/// The one fault of a text without a single key.
+fn nothing_in(text: &str, document: &DeTable<'_>, syntax: &[Fault]) -> Option<Fault> {
+    if !syntax.is_empty() || document.iter().next().is_some() {
+        return None;
+    }
+    let what =
+        if text.trim().is_empty() { "the scenario is empty" } else { "the scenario has comments only" };
+    Some(Fault::new(code::MISSING_KEY, 0..0, what).help("`controller-sim demo --save` writes an example"))
+}
+
 /// Reads everything; nothing comes back only when there are faults.
 fn read_root(root: Table<'_>, precision: Precision) -> Option<Scenario> {
     let log = root.log;
@@ -92,8 +109,11 @@ fn read_root(root: Table<'_>, precision: Precision) -> Option<Scenario> {
     let substeps = root.integer_in("substeps", 1, 1000).map_or(10, |n| n.value);
     check_length(&root, ts.as_ref(), duration.as_ref());
     let latency_span = root.span("latency");
+    let latency_is_long = check_latency(&root, ts.as_ref(), latency.as_ref());
     let latency = latency.map_or(0.0, |latency| latency.value);
-    let plant = read_plant(&root, ts.as_ref(), latency);
+    // Its length was reported: the sums with it are not reported again.
+    let summand = if latency_is_long { 0.0 } else { latency };
+    let plant = read_plant(&root, ts.as_ref(), summand);
     let initial = read_initial(&root, plant.as_ref());
     let noise = read_noise(&root);
     let actuator = read_actuator(&root);
@@ -103,7 +123,7 @@ fn read_root(root: Table<'_>, precision: Precision) -> Option<Scenario> {
     let context = Context { ts, ts_span, latency, latency_span, plant, precision };
     let mut drafts = read_controllers(&root, &context);
     let controllers: Vec<_> = drafts.iter().map(Draft::spec).collect();
-    let starts: Vec<_> = drafts.iter().map(|draft| (draft.places.clone(), draft.spec())).collect();
+    let places: Vec<_> = drafts.iter().map(|draft| draft.places.clone()).collect();
     let events = events::read(&root, &mut drafts, duration, &context);
     root.finish();
     if log.count() > 0 {
@@ -116,14 +136,15 @@ fn read_root(root: Table<'_>, precision: Precision) -> Option<Scenario> {
         substeps: usize::try_from(substeps).ok()?,
         plant: context.plant?,
         initial,
-        events,
+        events: events.iter().map(|placed| placed.event.clone()).collect(),
         controllers,
         noise,
         actuator,
     };
-    for (index, (places, spec)) in starts.iter().enumerate() {
-        super::start::warn(&scenario, index, spec, places, log);
+    for (index, places) in places.iter().enumerate() {
+        ranges::warn(&scenario, index, &events, places, log);
     }
+    ranges::warn_of_compensators(&scenario, &events, log);
     Some(scenario)
 }
 
@@ -134,8 +155,10 @@ fn read_version(root: &Table<'_>) {
     }
     let Some(version) = root.integer_in("version", 0, u64::MAX) else { return };
     if version.value != VERSION {
-        let message =
-            format!("`version = {}` is not known; this program reads version {VERSION}", version.value);
+        let message = format!(
+            "`version = {}` is not known; this program reads version {VERSION}",
+            root.log.slice(&version.span)
+        );
         root.log.fault(
             Fault::new(code::NOT_SUPPORTED, version.span, message)
                 .help(format!("write `version = {VERSION}`")),
@@ -154,7 +177,7 @@ fn required(root: &Table<'_>, key: &'static str, allowed: Allowed, example: &str
 fn check_length(root: &Table<'_>, ts: Option<&Located<f64>>, duration: Option<&Located<f64>>) {
     let (Some(ts), Some(duration)) = (ts, duration) else { return };
     let samples = duration.value / ts.value;
-    let (length, period) = (show(duration.value), show(ts.value));
+    let [length, period] = [&duration.span, &ts.span].map(|span| root.log.slice(span));
     let fault = if samples > MOST_SAMPLES {
         let message = format!(
             "`duration = {length}` is {} samples of {period} s; allowed: at most {MOST_SAMPLES:e}",
@@ -172,6 +195,18 @@ fn check_length(root: &Table<'_>, ts: Option<&Located<f64>>, duration: Option<&L
     root.log.fault(fault.related(ts.span.clone(), "the sampling period"));
 }
 
+/// The latency alone must not be too long; whether it is.
+fn check_latency(root: &Table<'_>, ts: Option<&Located<f64>>, latency: Option<&Located<f64>>) -> bool {
+    let (Some(ts), Some(latency)) = (ts, latency) else { return false };
+    let samples = latency.value / ts.value;
+    if samples <= LONGEST_DELAY {
+        return false;
+    }
+    let what = format!("`latency = {}` is", root.log.slice(&latency.span));
+    root.log.fault(delay_fault(&what, samples, latency.span.clone()));
+    true
+}
+
 fn read_plant(root: &Table<'_>, ts: Option<&Located<f64>>, latency: f64) -> Option<TransferFunction> {
     let example = "`[plant]` and below it `tf = \"exp(-0.2*s)/(1+s)\"`";
     if root.span("plant").is_none() {
@@ -185,7 +220,11 @@ fn read_plant(root: &Table<'_>, ts: Option<&Located<f64>>, latency: f64) -> Opti
     if let (Some(plant), Some(ts)) = (&plant, ts) {
         let samples = (plant.value.dead_time() + latency) / ts.value;
         if samples > LONGEST_DELAY {
-            root.log.fault(delay_fault("the plant's dead time and the latency", samples, plant.span.clone()));
+            root.log.fault(delay_fault(
+                "the plant's dead time and the latency are",
+                samples,
+                plant.span.clone(),
+            ));
         }
     }
     table.finish();
@@ -203,7 +242,7 @@ fn read_initial(root: &Table<'_>, plant: Option<&TransferFunction>) -> Initial {
     {
         let message = format!(
             "`initial.setpoint = {}`, but a plant with a zero at s = 0 can only rest at 0",
-            show(setpoint)
+            root.log.slice(&span)
         );
         root.log.fault(Fault::new(code::CONFLICT, span, message).help("leave it out"));
     }
@@ -235,8 +274,8 @@ fn read_actuator(root: &Table<'_>) -> Actuator {
     if let (true, Some(lo), Some(hi)) = (actuator.lo >= actuator.hi, table.span("lo"), table.span("hi")) {
         let message = format!(
             "`actuator.lo = {}` must be below `actuator.hi = {}`",
-            show(actuator.lo),
-            show(actuator.hi)
+            root.log.slice(&lo),
+            root.log.slice(&hi)
         );
         root.log.fault(Fault::new(code::CONFLICT, lo, message).related(hi, "the upper bound"));
     }

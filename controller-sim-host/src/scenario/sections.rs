@@ -2,13 +2,34 @@
 //! what was there before, so that an event may give a part.
 
 use super::fault::{Fault, code};
-use super::number::Allowed;
+use super::number::{Allowed, without_unit};
 use super::places::Places;
 use super::table::Table;
 use controller_core::{
     AlarmConfig, AntiWindupConfig, FallbackAction, FallbackConfig, FallbackReturn, LimitConfig, Param,
     SetpointConfig,
 };
+
+/// The widest range of a parameter, as far as it does not depend on others: what is said of a value that is no
+/// finite number. The law itself checks all others.
+fn allowed(param: Param) -> Option<Allowed> {
+    let range = |min, max, unit| Some(Allowed::new(min, max, unit));
+    match param {
+        Param::Kp | Param::Ki | Param::Kd | Param::ModelGain => range(-1e15, 1e15, ""),
+        Param::B | Param::C => range(0.0, 2.0, ""),
+        Param::Kfd => range(0.0, 1.0, ""),
+        Param::Tf | Param::DeadTime => range(0.0, 1e12, "s"),
+        Param::Tt | Param::Tfd | Param::Alpha | Param::ModelPoles => range(f64::MIN_POSITIVE, 1e12, "s"),
+        Param::Deadband | Param::AlarmHysteresis => range(0.0, 1e12, ""),
+        Param::OutputRateUp
+        | Param::OutputRateDown
+        | Param::SetpointRateUp
+        | Param::SetpointRateDown
+        | Param::FallbackRate => range(f64::MIN_POSITIVE, 1e15, "per second"),
+        Param::AlarmDeviation => range(f64::MIN_POSITIVE, 1e12, ""),
+        _ => Some(Allowed::SIGNAL),
+    }
+}
 
 /// Reads the number `key` into `target`, when it is there, and notes that it sets `param`.
 pub(super) fn take(
@@ -20,7 +41,7 @@ pub(super) fn take(
 ) {
     let Some(span) = table.span(key) else { return };
     places.set(param, table.name(key), span);
-    if let Some(number) = table.number(key) {
+    if let Some(number) = table.number(key, allowed(param)) {
         *target = number.value;
     }
 }
@@ -52,8 +73,22 @@ fn take_rate(
     for param in params {
         places.set(*param, table.name(key), span.clone());
     }
-    let none = table.log.slice(&span).trim_matches(['"', '\'']) == "none";
-    let rate = if none { None } else { table.number(key).map(|rate| rate.value) };
+    let mut none = false;
+    let mut rate = None;
+    if table.is_text(key) {
+        let Some(text) = table.text(key) else { return };
+        none = text.value == "none";
+        if !none && without_unit(text.value).is_none() && text.value.parse::<f64>().is_err() {
+            let help = (text.value.trim().eq_ignore_ascii_case("none")
+                || ["off", "unlimited", "inf"].contains(&text.value))
+            .then(|| "write \"none\" in lower case for no limit".to_owned());
+            table.unknown_choice(key, &text, "a number above 0, \"none\"", help);
+            return;
+        }
+    }
+    if !none {
+        rate = table.number(key, params.first().and_then(|param| allowed(*param))).map(|rate| rate.value);
+    }
     if none || rate.is_some() {
         for target in targets {
             *target = rate;

@@ -1,6 +1,6 @@
 //! "Did you mean": the known word nearest to what was written.
 
-/// What people write for a key in other programs or by habit, and what it is called here.
+/// What people write for a key or a word in other programs or by habit, and what it is called here.
 const OTHER_NAMES: &[(&str, &str)] = &[
     ("set_point", "setpoint"),
     ("reference", "setpoint"),
@@ -37,6 +37,22 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("output_limits", "limits"),
     ("sp_track", "track"),
     ("antiwindup", "anti_windup"),
+    ("backcalc", "back-calculation"),
+    ("back_calc", "back-calculation"),
+    ("tracking", "back-calculation"),
+    ("clamping", "conditional"),
+    ("ideal", "standard"),
+    ("isa", "standard"),
+    ("noninteracting", "standard"),
+    ("interacting", "series"),
+    ("tustin", "trapezoid"),
+    ("bilinear", "trapezoid"),
+    ("euler", "backward"),
+    ("heating", "reverse"),
+    ("cooling", "direct"),
+    ("automatic", "auto"),
+    ("remote", "cascade"),
+    ("latched", "acknowledged"),
 ];
 
 /// The one of `known` that `word` was probably meant to be.

@@ -2,12 +2,15 @@
 
 use super::fault::{Fault, code};
 use super::log::Log;
-use super::number::{Allowed, show};
+use super::number::{Allowed, show, without_unit};
 use super::suggest::closest;
 use std::cell::RefCell;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+/// The keys that stand above the first table.
+const ABOVE_TABLES: [&str; 5] = ["version", "ts", "duration", "latency", "substeps"];
 
 /// A value and where it stands.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +27,7 @@ pub(super) struct Table<'a> {
     /// Where to point at for what is missing: the header, or the whole inline table.
     pub(super) place: Range<usize>,
     path: String,
+    is_root: bool,
     asked: RefCell<Vec<&'static str>>,
     /// Keys that must be there and are not, with their faults: a misspelt key takes its own away.
     missing: RefCell<Vec<(&'static str, Fault)>>,
@@ -32,11 +36,22 @@ pub(super) struct Table<'a> {
 
 impl<'a> Table<'a> {
     pub(super) fn root(entries: &'a DeTable<'a>, log: &'a Log<'a>) -> Self {
-        Self::new(entries, 0..0, String::new(), log)
+        for key in ABOVE_TABLES.into_iter().filter(|&key| !entries.contains_key(key)) {
+            log.absent_above(key);
+        }
+        Self { is_root: true, ..Self::new(entries, 0..0, String::new(), log) }
     }
 
     fn new(entries: &'a DeTable<'a>, place: Range<usize>, path: String, log: &'a Log<'a>) -> Self {
-        Self { entries, place, path, asked: RefCell::default(), missing: RefCell::default(), log }
+        Self {
+            entries,
+            place,
+            path,
+            is_root: false,
+            asked: RefCell::default(),
+            missing: RefCell::default(),
+            log,
+        }
     }
 
     /// The name of `key` in messages, for example `limits.lo`.
@@ -102,8 +117,8 @@ impl<'a> Table<'a> {
         None
     }
 
-    /// A finite number.
-    pub(super) fn number(&self, key: &'static str) -> Option<Located<f64>> {
+    /// A finite number; `allowed` is what the message on another one says, when it is known here.
+    pub(super) fn number(&self, key: &'static str, allowed: Option<Allowed>) -> Option<Located<f64>> {
         let number = self.any_number(key)?;
         if number.value.is_finite() {
             return Some(number);
@@ -111,20 +126,22 @@ impl<'a> Table<'a> {
         let raw = self.log.slice(&number.span);
         let problem = match raw {
             _ if raw.contains("inf") || raw.contains("nan") => "is not a finite number",
-            _ => "is too large for a number; the largest is 1.8e308",
+            _ => "is too large for a number",
         };
-        let message = format!("`{} = {raw}` {problem}", self.name(key));
+        let allowed =
+            allowed.map_or("the largest is 1.8e308".to_owned(), |a| format!("allowed: {}", a.text()));
+        let message = format!("`{} = {raw}` {problem}; {allowed}", self.name(key));
         self.log.fault(Fault::new(code::OUT_OF_RANGE, number.span, message));
         None
     }
 
     /// A number within a range.
     pub(super) fn number_in(&self, key: &'static str, allowed: Allowed) -> Option<Located<f64>> {
-        let number = self.number(key)?;
+        let number = self.number(key, Some(allowed))?;
         if number.value >= allowed.min && number.value <= allowed.max {
             return Some(number);
         }
-        self.out_of_range(key, &number.span, &show(number.value), &allowed.text());
+        self.out_of_range(key, &number.span, self.log.slice(&number.span), &allowed.text());
         None
     }
 
@@ -184,16 +201,29 @@ impl<'a> Table<'a> {
         }
         let names: Vec<&str> = words.iter().map(|&(word, _)| word).collect();
         let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
-        let message = format!(
-            "`{} = \"{}\"` is not known; allowed: {}",
-            self.name(key),
-            shortened(text.value),
-            quoted.join(", ")
-        );
-        let mut fault = Fault::new(code::OUT_OF_RANGE, text.span, message);
-        fault.help = closest(text.value, &names).map(|name| format!("did you mean \"{name}\"?"));
-        self.log.fault(fault);
+        let help = closest(text.value, &names).map(|name| format!("did you mean \"{name}\"?"));
+        self.unknown_choice(key, &text, &quoted.join(", "), help);
         None
+    }
+
+    /// Reports a text that is none of those `allowed`.
+    pub(super) fn unknown_choice(
+        &self,
+        key: &'static str,
+        text: &Located<&str>,
+        allowed: &str,
+        help: Option<String>,
+    ) {
+        let message =
+            format!("`{} = \"{}\"` is not known; allowed: {allowed}", self.name(key), shortened(text.value));
+        let mut fault = Fault::new(code::UNKNOWN_CHOICE, text.span.clone(), message);
+        fault.help = help;
+        self.log.fault(fault);
+    }
+
+    /// Whether the value of `key` is a text; says nothing about another type.
+    pub(super) fn is_text(&self, key: &'static str) -> bool {
+        self.entry(key).is_some_and(|(_, value)| value.get_ref().is_str())
     }
 
     /// Whether the value of `key` is a table; says nothing about another type.
@@ -254,6 +284,11 @@ impl<'a> Table<'a> {
             let message = format!("unknown key `{}`{place}", shortened(key));
             let absent: Vec<&str> =
                 asked.iter().copied().filter(|known| !self.entries.contains_key(*known)).collect();
+            if !self.is_root && self.log.is_misplaced(key) {
+                let help = format!("`{key}` belongs above the first `[table]`");
+                self.log.fault(Fault::new(code::UNKNOWN_KEY, span, message).help(help));
+                continue;
+            }
             let meant = closest(key, &absent).or_else(|| closest(key, &asked));
             self.missing.borrow_mut().retain(|(other, _)| Some(*other) != meant);
             let help = match meant {
@@ -263,8 +298,11 @@ impl<'a> Table<'a> {
             };
             self.log.fault(Fault::new(code::UNKNOWN_KEY, span, message).help(help));
         }
-        for (_, fault) in self.missing.take() {
-            self.log.fault(fault);
+        for (key, fault) in self.missing.take() {
+            // One that stands below a table is reported there.
+            if !(self.is_root && ABOVE_TABLES.contains(&key) && !self.log.is_wanted_above(key)) {
+                self.log.fault(fault);
+            }
         }
     }
 }
@@ -290,6 +328,9 @@ fn to_f64(value: &DeValue<'_>) -> Option<f64> {
 
 /// Help for a number that was written as a text.
 fn number_in_text(key: &str, text: &str) -> Option<String> {
+    if let Some(help) = without_unit(text.trim()) {
+        return Some(help);
+    }
     let with_point = text.trim().replace(',', ".");
     let number: f64 = with_point.parse().ok()?;
     let quotes = if text.contains(',') { "without quotes and with a point" } else { "without quotes" };

@@ -130,22 +130,25 @@ fn delay_is_too_long(draft: &Draft, spec: &ControllerSpec, context: &Context, lo
     let (Some(ts), Some(compensator)) = (context.ts, spec.compensator_config(context.latency)) else {
         return false;
     };
+    if context.latency / ts > LONGEST_DELAY {
+        // Reported where it is written.
+        return true;
+    }
     let samples = (compensator.model.dead_time + context.latency) / ts;
     if samples.is_nan() || samples <= LONGEST_DELAY {
         return false;
     }
     if !draft.places.is_reported(Param::DeadTime, log) {
         let span = draft.places.of(Param::DeadTime).map_or(draft.places.whole.clone(), |s| s.span.clone());
-        log.fault(delay_fault("the model's dead time and the latency", samples, span));
+        log.fault(delay_fault("the model's dead time and the latency are", samples, span));
     }
     true
 }
 
-/// The fault of a delay of `samples` samples.
+/// The fault of a delay of `samples` samples; `what` ends with the verb.
 pub(super) fn delay_fault(what: &str, samples: f64, span: Range<usize>) -> Fault {
-    let message =
-        format!("{what} are {} samples long; allowed: at most {LONGEST_DELAY:e}", show_short(samples));
-    Fault::new(code::TOO_LARGE, span, message).help("choose a longer `ts`, or a shorter dead time")
+    let message = format!("{what} {} samples long; allowed: at most {LONGEST_DELAY:e}", show_short(samples));
+    Fault::new(code::TOO_LARGE, span, message).help("choose a longer `ts`, or a shorter delay")
 }
 
 /// What can be built and is odd all the same.
@@ -163,7 +166,24 @@ fn warn(draft: &Draft, spec: &ControllerSpec, context: &Context, log: &Log<'_>) 
         );
         log.warn(Fault::new(code::FAST_FILTER, place(Param::Tf), message));
     }
+    let [kp, ki, _] = pid.signed_gains();
+    if kp * ki < 0.0 {
+        let message = format!(
+            "`kp` and `ki` have opposite signs ({} and {}): one of them drives away from the set-point",
+            show_short(pid.kp),
+            show_short(pid.ki)
+        );
+        let help = "give both the same sign; `action` changes the sign of all gains";
+        log.warn(
+            Fault::new(code::SIGN, place(Param::Ki), message).help(help).related(place(Param::Kp), "`kp`"),
+        );
+        return;
+    }
     let Some(plant) = &context.plant else { return };
+    // The sign of the gain says how an unstable plant rests, not which way it has to be driven.
+    if is_unstable(plant) {
+        return;
+    }
     let gain = plant.gain();
     if let Some(compensator) = spec.compensator_config(context.latency)
         && compensator.model.gain * gain < 0.0
@@ -176,7 +196,6 @@ fn warn(draft: &Draft, spec: &ControllerSpec, context: &Context, log: &Log<'_>) 
         log.warn(Fault::new(code::SIGN, place(Param::ModelGain), message).help("give both the same sign"));
         return;
     }
-    let [kp, ki, _] = pid.signed_gains();
     let (name, param, acting) = if ki == 0.0 { ("kp", Param::Kp, kp) } else { ("ki", Param::Ki, ki) };
     if acting * gain < 0.0 {
         let message = format!(
@@ -187,4 +206,9 @@ fn warn(draft: &Draft, spec: &ControllerSpec, context: &Context, log: &Log<'_>) 
         let help = "change the sign of the gains, or the `action` of the PID";
         log.warn(Fault::new(code::SIGN, place(param), message).help(help));
     }
+}
+
+/// Whether the plant has a pole to the right of the imaginary axis; one on it may be computed a little beside.
+fn is_unstable(plant: &TransferFunction) -> bool {
+    plant.poles().iter().any(|pole| pole.re > 1e-6 * pole.re.hypot(pole.im))
 }

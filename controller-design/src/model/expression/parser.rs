@@ -15,31 +15,53 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::delay::delay;
-use super::token::{Kind, Token, shown};
+use super::repair::Repairs;
+use super::report::{LONGEST_HELP, described};
+use super::token::{Kind, Token};
 use super::{MAX_EXPONENT, MAX_NESTING};
 use crate::model::error::{ExpressionError, Span};
-use crate::model::factored::{Factored, Fault, MAX_DEGREE};
+use crate::model::factored::{Factored, Fault};
 use crate::model::number::rounded;
 
 /// A part of the expression: its value unless there is a mistake in it, and its text.
-struct Operand {
+pub(super) struct Operand {
     value: Option<Factored>,
     span: Span,
+    /// Of a product: the factors after its last `/`.
+    divisor: Option<Span>,
+}
+
+impl Operand {
+    pub(super) const fn new(value: Option<Factored>, span: Span) -> Self {
+        Self { value, span, divisor: None }
+    }
 }
 
 pub(super) struct Parser<'t> {
-    text: &'t str,
-    tokens: &'t [Token],
-    at: usize,
+    pub(super) text: &'t str,
+    pub(super) tokens: &'t [Token],
+    pub(super) at: usize,
     depth: usize,
     /// Set when the nesting is too deep: the rest is not read.
-    gave_up: bool,
-    errors: Vec<ExpressionError>,
+    pub(super) gave_up: bool,
+    pub(super) errors: Vec<ExpressionError>,
+    /// Which of the errors are about a computed value: they follow from another mistake when one is found.
+    pub(super) computed: Vec<usize>,
+    repairs: Repairs,
 }
 
 impl<'t> Parser<'t> {
-    pub(super) const fn new(text: &'t str, tokens: &'t [Token]) -> Self {
-        Self { text, tokens, at: 0, depth: 0, gave_up: false, errors: Vec::new() }
+    pub(super) fn new(text: &'t str, tokens: &'t [Token]) -> Self {
+        Self {
+            text,
+            tokens,
+            at: 0,
+            depth: 0,
+            gave_up: false,
+            errors: Vec::new(),
+            computed: Vec::new(),
+            repairs: Repairs::default(),
+        }
     }
 
     /// The value of the whole text, if it has one, and the mistakes.
@@ -64,31 +86,21 @@ impl<'t> Parser<'t> {
         (value, self.errors)
     }
 
-    fn peek(&self) -> Option<Token> {
+    pub(super) fn peek(&self) -> Option<Token> {
         self.tokens.get(self.at).copied()
     }
 
-    fn peek_kind(&self) -> Option<Kind> {
+    pub(super) fn peek_kind(&self) -> Option<Kind> {
         self.peek().map(|t| t.kind)
     }
 
-    fn previous(&self) -> Option<Token> {
+    pub(super) fn previous(&self) -> Option<Token> {
         self.at.checked_sub(1).and_then(|k| self.tokens.get(k)).copied()
-    }
-
-    fn report(&mut self, error: ExpressionError) {
-        if !self.gave_up {
-            self.errors.push(error);
-        }
-    }
-
-    /// The token as it stands in the text, short.
-    fn shown(&self, token: Token) -> String {
-        shown(token.span.of(self.text))
     }
 
     fn sum(&mut self) -> Operand {
         let mut left = self.product();
+        let (start, divisor, count) = (left.span, left.divisor, self.errors.len());
         while let Some(sign @ (Kind::Plus | Kind::Minus)) = self.peek_kind() {
             self.at += 1;
             let mut right = self.product();
@@ -98,12 +110,16 @@ impl<'t> Parser<'t> {
             let span = left.span.to(right.span);
             left = self.combine(left, right, span, Factored::add);
         }
+        if let Some(divisor) = divisor {
+            self.suggest_denominator(count, start, divisor.to(left.span));
+        }
         left
     }
 
     fn product(&mut self) -> Operand {
         let mut left = self.signed();
         let mut last = left.span;
+        let mut divisor = None;
         while let Some(kind) = self.peek_kind() {
             let right = match kind {
                 Kind::Star | Kind::Slash => {
@@ -111,17 +127,24 @@ impl<'t> Parser<'t> {
                     self.signed()
                 }
                 Kind::Junk => self.junk(),
-                _ if kind.begins_value() => self.after_missing_operator(last),
+                _ if kind.begins_value() => self.after_missing_operator(left.span, last, divisor.is_some()),
                 _ => break,
             };
             last = right.span;
+            let before = left.span;
             left = if kind == Kind::Slash {
+                divisor = Some(last);
                 self.combine(left, right, last, Factored::div)
             } else {
+                if kind == Kind::Star {
+                    divisor = None;
+                }
                 let span = left.span.to(right.span);
                 self.combine(left, right, span, Factored::mul)
             };
+            left.span = before.to(last);
         }
+        left.divisor = divisor;
         left
     }
 
@@ -135,7 +158,7 @@ impl<'t> Parser<'t> {
     ) -> Operand {
         let span = left.span.to(right.span);
         let result = left.value.zip(right.value).map(|(a, b)| operation(a, b));
-        Operand { value: self.settle(result, place), span }
+        Operand::new(self.settle(result, place), span)
     }
 
     /// Reports the fault, if it is one.
@@ -143,31 +166,46 @@ impl<'t> Parser<'t> {
         match result? {
             Ok(value) => Some(value),
             Err(fault) => {
-                self.report(described(fault, place));
+                self.report_value(described(fault, place));
                 None
             }
         }
     }
 
-    /// The factor after a value without an operator in between. `last` is the factor before.
-    fn after_missing_operator(&mut self, last: Span) -> Operand {
+    /// The factor after a value without an operator in between. `last` is the factor before, `all` everything from
+    /// the start of the product to it, `divides` whether `last` is divided by.
+    fn after_missing_operator(&mut self, all: Span, last: Span, divides: bool) -> Operand {
         let (before, after) = (self.previous(), self.peek());
-        let right = self.power();
+        let mut right = self.power();
         let (Some(before), Some(after)) = (before, after) else { return right };
-        if before.kind != Kind::Unknown && after.kind != Kind::Unknown {
-            let message = format!(
-                "an operator is missing between `{}` and `{}`",
-                self.shown(before),
-                self.shown(after)
-            );
-            let (a, b) = (last.of(self.text), right.span.of(self.text));
-            let help = if a.len() + b.len() <= 40 && !a.is_empty() && !b.is_empty() {
-                format!("write `{a}*{b}`")
-            } else {
-                String::from("put `*` between them")
-            };
-            self.report(ExpressionError::new(before.span.to(after.span), message).with_help(help));
+        if before.kind == Kind::Unknown || after.kind == Kind::Unknown {
+            return right;
         }
+        let message =
+            format!("an operator is missing between `{}` and `{}`", self.shown(before), self.shown(after));
+        self.repairs.product(before.span.end, after.span.start);
+        let mut whole = last;
+        if divides {
+            // Everything that stands side by side after a `/` was meant to be below it: one mistake.
+            whole = all;
+            while self.peek_kind().is_some_and(Kind::begins_value) {
+                if let (Some(before), Some(after)) = (self.previous(), self.peek()) {
+                    self.repairs.product(before.span.end, after.span.start);
+                }
+                let next = self.power();
+                right = Operand::new(None, right.span.to(next.span));
+            }
+            self.repairs.parentheses(last.start, right.span.end);
+        }
+        let repaired = self.repairs.apply(self.text, whole.to(right.span));
+        let help = match (repaired.len() <= LONGEST_HELP && !repaired.is_empty(), divides) {
+            (true, _) => format!("write `{repaired}`"),
+            (false, false) => String::from("put `*` between them"),
+            (false, true) => {
+                String::from("put `*` between them, and the whole denominator in parentheses: `.../(a*b)`")
+            }
+        };
+        self.report(ExpressionError::new(before.span.to(after.span), message).with_help(help));
         right
     }
 
@@ -183,7 +221,7 @@ impl<'t> Parser<'t> {
             self.at += 1;
             span = span.to(self.signed().span);
         }
-        Operand { value: None, span }
+        Operand::new(None, span)
     }
 
     /// Reads signs; whether they come to a minus.
@@ -215,7 +253,7 @@ impl<'t> Parser<'t> {
             self.report(ExpressionError::new(span, message));
             self.gave_up = true;
             self.at = self.tokens.len();
-            return Operand { value: None, span };
+            return Operand::new(None, span);
         }
         self.depth += 1;
         let mut operand = self.primary();
@@ -231,7 +269,7 @@ impl<'t> Parser<'t> {
     fn raised(&mut self, base: Operand, exponent: Operand) -> Operand {
         let span = base.span.to(exponent.span);
         let Some((value, power)) = base.value.zip(exponent.value) else {
-            return Operand { value: None, span };
+            return Operand::new(None, span);
         };
         let message = match power.as_constant() {
             None => String::from("the exponent must be a number"),
@@ -246,11 +284,11 @@ impl<'t> Parser<'t> {
             }
             Some(n) => {
                 let value = self.settle(Some(value.pow(n as i32)), span);
-                return Operand { value, span };
+                return Operand::new(value, span);
             }
         };
-        self.report(ExpressionError::new(exponent.span, message));
-        Operand { value: None, span }
+        self.report_value(ExpressionError::new(exponent.span, message));
+        Operand::new(None, span)
     }
 
     fn primary(&mut self) -> Operand {
@@ -265,22 +303,25 @@ impl<'t> Parser<'t> {
             _ => return self.missing(),
         };
         self.at += 1;
-        Operand { value, span: token.span }
+        Operand::new(value, token.span)
     }
 
     /// `( sum )`, and the sum by itself.
     fn group(&mut self) -> (Operand, Operand) {
         let open = self.here();
+        let count = self.errors.len();
         self.at += 1;
-        let inner = self.sum();
-        let mut outer = Operand { value: inner.value.clone(), span: open.to(inner.span) };
+        let mut inner = self.sum();
+        let mut outer = Operand::new(inner.value.clone(), open.to(inner.span));
         if let Some(close) = self.peek().filter(|t| t.kind == Kind::Close) {
             outer.span = open.to(close.span);
             self.at += 1;
         } else {
+            // It took in more than was meant: what its value is says nothing.
+            self.take_back_values(count);
             let error = ExpressionError::new(open, "this parenthesis is never closed");
             self.report(error.with_help("add the `)` that belongs to it"));
-            outer.value = None;
+            (inner.value, outer.value) = (None, None);
         }
         (outer, inner)
     }
@@ -291,7 +332,7 @@ impl<'t> Parser<'t> {
         if self.peek_kind() == Some(Kind::Open) {
             span = span.to(self.group().0.span);
         }
-        Operand { value: None, span }
+        Operand::new(None, span)
     }
 
     fn exponential(&mut self, name: Span) -> Operand {
@@ -301,11 +342,11 @@ impl<'t> Parser<'t> {
             let value = inner.value.and_then(|argument| match delay(&argument, inner.span) {
                 Ok(value) => Some(value),
                 Err(error) => {
-                    self.report(error);
+                    self.report_value(error);
                     None
                 }
             });
-            return Operand { value, span: name.to(outer.span) };
+            return Operand::new(value, name.to(outer.span));
         }
         let error = ExpressionError::new(name, "`exp` needs its argument in parentheses");
         self.report(error.with_help("write `exp(-T*s)`, T being the dead time in seconds"));
@@ -313,70 +354,11 @@ impl<'t> Parser<'t> {
         if self.peek_kind().is_some_and(Kind::begins_value) {
             span = span.to(self.power().span);
         }
-        Operand { value: None, span }
-    }
-
-    /// Reports that a value should stand here. Nothing is read.
-    fn missing(&mut self) -> Operand {
-        let span = self.here();
-        let before = self.previous();
-        // Inside parentheses only what stands in them counts.
-        let operator_before = before.filter(|t| t.kind.is_operator());
-        let error = match (operator_before, self.peek()) {
-            (Some(a), Some(b)) if b.kind.is_operator() => {
-                let message =
-                    format!("a value is missing between `{}` and `{}`", self.shown(a), self.shown(b));
-                Some(ExpressionError::new(a.span.to(b.span), message))
-            }
-            (Some(a), _) => {
-                let operator = self.shown(a);
-                let error = ExpressionError::new(a.span, format!("`{operator}` has nothing to its right"));
-                Some(error.with_help(format!("add a value after `{operator}`, or remove it")))
-            }
-            (None, Some(b)) if b.kind.is_operator() => {
-                let operator = self.shown(b);
-                let error = ExpressionError::new(b.span, format!("`{operator}` has nothing to its left"));
-                Some(error.with_help(format!("add a value before `{operator}`, or remove it")))
-            }
-            (None, Some(b)) => before.filter(|a| a.kind == Kind::Open).map(|a| {
-                let error = ExpressionError::new(a.span.to(b.span), "there is nothing in these parentheses");
-                let name = self.at.checked_sub(2).and_then(|k| self.tokens.get(k)).map(|t| t.kind);
-                error.with_help(match name {
-                    Some(Kind::Exp) => "a dead time of T seconds is `exp(-T*s)`",
-                    _ => "write a value in them, or remove them",
-                })
-            }),
-            // An opening parenthesis at the end is reported as never closed.
-            (None, None) => None,
-        };
-        if let Some(error) = error {
-            self.report(error);
-        }
-        Operand { value: None, span }
+        Operand::new(None, span)
     }
 
     /// The token to be read, or the one before at the end.
-    fn here(&self) -> Span {
+    pub(super) fn here(&self) -> Span {
         self.peek().or_else(|| self.tokens.last().copied()).map_or(Span::new(0, 0), |t| t.span)
-    }
-}
-
-fn described(fault: Fault, place: Span) -> ExpressionError {
-    match fault {
-        Fault::DivisionByZero => ExpressionError::new(place, "division by zero"),
-        Fault::ZeroToTheZero => ExpressionError::new(place, "0^0 has no value"),
-        Fault::DeadTimesDiffer(a, b) => ExpressionError::new(
-            place,
-            format!("the terms of this sum have different dead times, {} s and {} s", rounded(a), rounded(b)),
-        )
-        .with_help("a plant has one dead time for all of it: `exp(-T*s)*(...)`"),
-        Fault::OutOfRange => ExpressionError::new(
-            place,
-            "a number computed here is too large or too small for double precision",
-        ),
-        Fault::DegreeTooHigh(degree) => ExpressionError::new(
-            place,
-            format!("the order here is {degree}; allowed are at most {MAX_DEGREE}"),
-        ),
     }
 }

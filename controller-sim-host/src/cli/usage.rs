@@ -1,0 +1,44 @@
+//! Wrong arguments, and what was probably meant by them.
+
+use crate::output::Problem;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use std::path::Path;
+
+/// Commands that are planned, and none yet.
+const LATER: [&str; 8] = ["design", "tune", "identify", "analyze", "assess", "batch", "export", "reproduce"];
+
+/// What is to be said of a wrong argument instead of the parser's own words, when there is something better.
+pub(super) fn better(error: &clap::Error) -> Option<Problem> {
+    let unknown = match error.kind() {
+        ErrorKind::InvalidSubcommand => ContextKind::InvalidSubcommand,
+        ErrorKind::UnknownArgument => ContextKind::InvalidArg,
+        _ => return None,
+    };
+    let Some(ContextValue::String(word)) = error.get(unknown) else { return None };
+    if LATER.contains(&&**word) {
+        let message = format!("the command `{word}` is not in this version");
+        return Some(Problem::new("usage", message).help("the commands are `run` and `demo`"));
+    }
+    let is_scenario = word == "-" || word.ends_with(".toml") || Path::new(word).is_file();
+    is_scenario.then(|| {
+        let message = format!("`{word}` is no command");
+        Problem::new("usage", message).help(format!("to run a scenario: controller-sim run {}", quoted(word)))
+    })
+}
+
+/// A word as a shell takes it whole.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./+,:@".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
+}
+
+/// The parser's own words in one line.
+pub(super) fn plain(error: &clap::Error) -> Problem {
+    let text = error.to_string();
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let first = lines.next().unwrap_or("wrong arguments").trim_start_matches("error: ");
+    // What is missing stands on the lines below.
+    let listed: Vec<&str> = lines.take_while(|line| line.starts_with(['<', '-', '['])).collect();
+    let problem = Problem::new("usage", format!("{first} {}", listed.join(" ")).trim());
+    problem.help("see `controller-sim --help`")
+}
