@@ -1,7 +1,8 @@
 //! The ladder: rungs in order from cheap to dear, each timed, with a summary at the end.
 //!
 //! What a rung does stands in [`crate::rungs`]; this module knows only how to run them one after the other and how to
-//! report. A rung that cannot run here is skipped by name and with its reason, never silently.
+//! report. A rung that cannot run here is skipped by name and with its reason, never silently; one that was not asked
+//! for is left out.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -19,11 +20,17 @@ pub(crate) struct Rung {
     pub(crate) run: fn(&Path) -> Outcome<Done>,
 }
 
-/// How a rung ended that did not fail.
+/// Minutes that the whole ladder may take on two cores.
+const LIMIT_MINUTES: u64 = 40;
+
+/// How a rung ended that found no fault in the sources.
 #[derive(Debug)]
 pub(crate) enum Done {
     /// It holds; a remark may say what was looked at.
     Passed(String),
+    /// It failed because the machine lacks something, said with the command to run. The rungs above it run all the
+    /// same: this says nothing about the sources.
+    Lacking(String),
     /// It could not run here, for this reason.
     Skipped(String),
 }
@@ -44,8 +51,17 @@ pub(crate) struct Options {
     pub(crate) only: Vec<String>,
 }
 
+impl Options {
+    /// Whether a rung was asked for.
+    fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|asked| asked == name)
+    }
+}
+
 /// A line of the summary.
 struct Line {
+    /// Place on the ladder, from 1.
+    number: usize,
     name: &'static str,
     end: End,
     time: Duration,
@@ -99,25 +115,26 @@ pub(crate) fn climb(root: &Path, options: &Options) -> Outcome {
 fn run(rungs: &[Rung], root: &Path, options: &Options) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut stop = false;
-    for (at, rung) in rungs.iter().enumerate() {
+    for (number, rung) in (1..).zip(rungs).filter(|(_, rung)| options.wants(rung.name)) {
         let start = Instant::now();
-        let end = if !options.only.is_empty() && !options.only.iter().any(|name| name == rung.name) {
-            End::Skipped("not asked for".into())
-        } else if stop {
+        let end = if stop {
             End::NotReached
         } else {
-            println!("\nrung {}/{} {}: {}", at + 1, rungs.len(), rung.name, rung.about);
+            println!("\nrung {number}/{} {}: {}", rungs.len(), rung.name, rung.about);
             let end = match (rung.run)(root) {
                 Ok(Done::Passed(remark)) => End::Passed(remark),
                 Ok(Done::Skipped(reason)) => End::Skipped(reason),
-                Err(message) => End::Failed(message),
+                Ok(Done::Lacking(message)) => End::Failed(message),
+                Err(message) => {
+                    stop = !options.keep_going;
+                    End::Failed(message)
+                }
             };
             let (word, remark) = end.parts();
             println!("  {word} in {}{}", human(start.elapsed()), after(remark, ": "));
             end
         };
-        stop |= matches!(end, End::Failed(_)) && !options.keep_going;
-        lines.push(Line { name: rung.name, end, time: start.elapsed() });
+        lines.push(Line { number, name: rung.name, end, time: start.elapsed() });
     }
     lines
 }
@@ -125,7 +142,7 @@ fn run(rungs: &[Rung], root: &Path, options: &Options) -> Vec<Line> {
 fn summary(lines: &[Line], total: Duration) -> String {
     let width = lines.iter().map(|line| line.name.len()).max().unwrap_or(0);
     let mut text = String::from("\nSummary\n");
-    for (at, line) in lines.iter().enumerate() {
+    for line in lines {
         let (word, remark) = line.end.parts();
         let time = match line.end {
             End::Passed(_) | End::Failed(_) => human(line.time),
@@ -133,11 +150,11 @@ fn summary(lines: &[Line], total: Duration) -> String {
         };
         // The whole message stands where the rung failed; one line of it is enough here.
         let remark = after(remark.lines().next().unwrap_or_default(), "  ");
-        text.push_str(&format!("  {:>2}  {:width$}  {word:7}  {time:>12}{remark}\n", at + 1, line.name));
+        text.push_str(&format!("  {:>2}  {:width$}  {word:7}  {time:>12}{remark}\n", line.number, line.name));
     }
     let count = |wanted: &str| lines.iter().filter(|line| line.end.parts().0 == wanted).count();
     text.push_str(&format!(
-        "{} passed, {} failed, {} skipped, {} not run in {}\n",
+        "{} passed, {} failed, {} skipped, {} not run\ntotal time {} (at most {LIMIT_MINUTES} min on two cores)\n",
         count("passed"),
         count("FAILED"),
         count("skipped"),
@@ -186,24 +203,34 @@ mod tests {
     fn runs_only_what_is_asked_for() {
         let options = Options { keep_going: false, only: vec!["late".into()] };
         let lines = run(&sample(), Path::new("."), &options);
-        assert_eq!(words(&lines), ["skipped", "skipped", "skipped", "passed"]);
+        assert_eq!(words(&lines), ["passed"]);
+        assert_eq!((lines[0].number, lines[0].name), (4, "late"));
+    }
+
+    #[test]
+    fn what_the_machine_lacks_fails_one_rung_only() {
+        let [good, .., late] = sample();
+        let lacking = Rung { name: "lacking", about: "", run: |_| Ok(Done::Lacking("run: this".into())) };
+        let lines = run(&[good, lacking, late], Path::new("."), &Options::default());
+        assert_eq!(words(&lines), ["passed", "FAILED", "passed"]);
     }
 
     #[test]
     fn summary_lines_up_and_names_the_reasons() {
-        let line = |name, end, ms| Line { name, end, time: Duration::from_millis(ms) };
+        let line = |number, name, end, ms| Line { number, name, end, time: Duration::from_millis(ms) };
         let lines = [
-            line("good", End::Passed(String::new()), 1_234),
-            line("absent", End::Skipped("no tool".into()), 1),
-            line("bad", End::Failed("broke\nat length".into()), 245_000),
-            line("late", End::NotReached, 0),
+            line(1, "good", End::Passed(String::new()), 1_234),
+            line(2, "absent", End::Skipped("no tool".into()), 1),
+            line(3, "bad", End::Failed("broke\nat length".into()), 245_000),
+            line(7, "late", End::NotReached, 0),
         ];
         let expected = "\nSummary
    1  good    passed          1.2 s
    2  absent  skipped             -  no tool
    3  bad     FAILED     4 min 05 s  broke
-   4  late    not run             -  an earlier rung failed
-1 passed, 1 failed, 1 skipped, 1 not run in 4 min 06 s
+   7  late    not run             -  an earlier rung failed
+1 passed, 1 failed, 1 skipped, 1 not run
+total time 4 min 06 s (at most 40 min on two cores)
 ";
         assert_eq!(summary(&lines, Duration::from_secs(246)), expected);
     }

@@ -46,7 +46,7 @@ const COMMANDS: [Command; 6] = [
     Command {
         name: "setup",
         about: "add the components and targets that the pinned toolchain lacks",
-        options: &[("--fuzz", "a nightly compiler and cargo-fuzz as well")],
+        options: &[("--fuzz", "cargo-fuzz as well (needs a C++ compiler)")],
     },
     Command {
         name: "test",
@@ -117,9 +117,12 @@ fn perform(request: Request, root: &Path) -> Outcome {
             Ok(())
         }
         Request::Setup { fuzz } => {
-            setup::toolchain(root)?;
+            let mut lacking = setup::toolchain(root)?;
             if fuzz {
-                setup::fuzzing(root)?;
+                lacking.extend(setup::fuzzing(root).err());
+            }
+            if !lacking.is_empty() {
+                return Err(format!("set-up is not complete\n{}", lacking.join("\n")));
             }
             println!("set-up complete");
             Ok(())
@@ -143,16 +146,11 @@ fn soak(root: &Path, minutes: u64) -> Outcome {
         println!("no fuzzing: --minutes 0");
         return Ok(());
     }
-    match fuzz::readiness(root)? {
-        fuzz::Readiness::NoTargets => {
-            println!("no fuzzing: there is no {}", fuzz::MANIFEST);
-            Ok(())
-        }
-        fuzz::Readiness::NoTool => {
-            Err("cargo-fuzz is missing; run: cargo xtask setup --fuzz (or skip with --minutes 0)".into())
-        }
-        fuzz::Readiness::Ready(targets) => fuzz::run_all(root, &targets, minutes * 60),
+    let targets = fuzz::targets(root)?;
+    if let Some(message) = setup::lacking_for_fuzzing(root) {
+        return Err(format!("{message} (or leave fuzzing out by --minutes 0)"));
     }
+    fuzz::run_all(root, &targets, minutes * 60)
 }
 
 /// The text of `cargo xtask` and `cargo xtask --help`.

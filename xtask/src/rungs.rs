@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::checks;
-use crate::fuzz::{self, Readiness};
+use crate::fuzz;
 use crate::ladder::{Done, Rung};
 use crate::manifest::Manifest;
-use crate::setup::{self, Toolchain};
+use crate::setup::{self, Part, Toolchain};
 use crate::shell::{Cmd, Outcome, in_ci, target_dir};
 
 /// All rungs, in order.
@@ -42,30 +42,30 @@ struct Variant {
     name: &'static str,
     /// What is different from the plain build.
     args: &'static [&'static str],
-    /// Flags for the compiler.
-    rustflags: &'static str,
+    /// A flag for the compiler, or none; one word, see [`same_bits`].
+    rustflag: &'static str,
 }
 
 /// The builds whose traces must agree. No debug information: nobody debugs them and they build faster.
 const VARIANTS: [Variant; 5] = [
-    Variant { name: "opt-0", args: &["--config=profile.dev.opt-level=0", NO_DEBUG], rustflags: "" },
-    Variant { name: "opt-1", args: &["--config=profile.dev.opt-level=1", NO_DEBUG], rustflags: "" },
-    Variant { name: "opt-3", args: &["--config=profile.dev.opt-level=3", NO_DEBUG], rustflags: "" },
+    Variant { name: "opt-0", args: &["--config=profile.dev.opt-level=0", NO_DEBUG], rustflag: "" },
+    Variant { name: "opt-1", args: &["--config=profile.dev.opt-level=1", NO_DEBUG], rustflag: "" },
+    Variant { name: "opt-3", args: &["--config=profile.dev.opt-level=3", NO_DEBUG], rustflag: "" },
     // All instructions of this machine, fused multiply-add among them: the compiler must not use it on its own.
     Variant {
         name: "native",
         args: &["--config=profile.dev.opt-level=3", NO_DEBUG],
-        rustflags: "-C target-cpu=native",
+        rustflag: "-Ctarget-cpu=native",
     },
     // The profile that is shipped: optimised across crates, overflow checks off.
-    Variant { name: "release", args: &["--release"], rustflags: "" },
+    Variant { name: "release", args: &["--release"], rustflag: "" },
 ];
 
 /// See [`VARIANTS`].
 const NO_DEBUG: &str = "--config=profile.dev.debug=false";
 
 fn set_up(root: &Path) -> Outcome<Done> {
-    setup::toolchain(root)?;
+    let lacking = setup::toolchain(root)?;
     let version = Cmd::new("rustc", root).arg("--version").capture()?;
     let channel = Toolchain::read(root)?.channel;
     // `cargo +other xtask test` would check with another compiler than the one that is pinned.
@@ -75,15 +75,24 @@ fn set_up(root: &Path) -> Outcome<Done> {
             version.trim()
         ));
     }
-    Ok(Done::Passed(version.trim().into()))
+    // The rungs that need what is missing fail for it, and no other.
+    let remarks: Vec<&str> =
+        std::iter::once(version.trim()).chain(lacking.iter().map(String::as_str)).collect();
+    Ok(Done::Passed(remarks.join("; ")))
 }
 
 fn format(root: &Path) -> Outcome<Done> {
+    if let Some(message) = setup::lacking(root, Part::Component, &["rustfmt".into()])? {
+        return Ok(Done::Lacking(message));
+    }
     Cmd::cargo(root).args(["fmt", "--all", "--check"]).run()?;
     Done::passed()
 }
 
 fn clippy(root: &Path) -> Outcome<Done> {
+    if let Some(message) = setup::lacking(root, Part::Component, &["clippy".into()])? {
+        return Ok(Done::Lacking(message));
+    }
     Cmd::cargo(root).args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]).run()?;
     Done::passed()
 }
@@ -105,6 +114,9 @@ fn docs_rung(root: &Path) -> Outcome<Done> {
 
 fn targets(root: &Path) -> Outcome<Done> {
     let targets = Toolchain::read(root)?.targets;
+    if let Some(message) = setup::lacking(root, Part::Target, &targets)? {
+        return Ok(Done::Lacking(message));
+    }
     let forms = feature_forms(&Manifest::read(&root.join(CORE).join("Cargo.toml"))?);
     for target in &targets {
         for form in &forms {
@@ -139,19 +151,21 @@ fn dependencies(root: &Path) -> Outcome<Done> {
 
 fn same_bits(root: &Path) -> Outcome<Done> {
     if !root.join(TRACE_EXAMPLE).is_file() {
-        return Ok(Done::Skipped("no example trace_hash".into()));
+        return Err(format!(
+            "{TRACE_EXAMPLE} is missing: without it nobody knows whether the bits are the same"
+        ));
     }
     let mut outputs = Vec::new();
     for variant in &VARIANTS {
         // A folder of its own for each: a binary left by another variant must never be run by mistake.
         let folder = target_dir(root).join("same-bits").join(variant.name);
-        let mut cmd = Cmd::cargo(root)
+        let cmd = Cmd::cargo(root)
+            // Always set, if only to nothing: of all the places flags can come from, this one shuts out the others, so
+            // that no flag of the caller makes two variants the same build. Words in it are not parted by blanks.
+            .env("CARGO_ENCODED_RUSTFLAGS", variant.rustflag)
             .args(["run", "-p", "controller-tests", "--example", "trace_hash", "--target-dir"])
             .arg(folder)
             .args(variant.args);
-        if !variant.rustflags.is_empty() {
-            cmd = cmd.env("RUSTFLAGS", variant.rustflags);
-        }
         outputs.push((variant.name, cmd.capture()?));
     }
     let lines = checks::same_output(&outputs)?;
@@ -170,20 +184,19 @@ fn demo(root: &Path) -> Outcome<Done> {
 }
 
 fn fuzz_rung(root: &Path) -> Outcome<Done> {
-    let mut readiness = fuzz::readiness(root)?;
-    if matches!(readiness, Readiness::NoTool) && in_ci() {
-        setup::fuzzing(root)?;
-        readiness = fuzz::readiness(root)?;
+    let targets = fuzz::targets(root)?;
+    if setup::lacking_for_fuzzing(root).is_some()
+        && in_ci()
+        && let Err(message) = setup::fuzzing(root)
+    {
+        println!("{message}");
     }
-    match readiness {
-        Readiness::NoTargets => Ok(Done::Skipped(format!("no {}", fuzz::MANIFEST))),
-        Readiness::NoTool if in_ci() => Err("cargo-fuzz is still missing after its installation".into()),
-        Readiness::NoTool => Ok(Done::Skipped("cargo-fuzz is missing: cargo xtask setup --fuzz".into())),
-        Readiness::Ready(targets) => {
-            fuzz::run_all(root, &targets, fuzz::ladder_seconds(targets.len()))?;
-            Ok(Done::Passed(targets.join(", ")))
-        }
+    if let Some(message) = setup::lacking_for_fuzzing(root) {
+        // A person may do without; an automatic build that left it out would look like one that fuzzed.
+        return Ok(if in_ci() { Done::Lacking(message) } else { Done::Skipped(message) });
     }
+    fuzz::run_all(root, &targets, fuzz::ladder_seconds(targets.len()))?;
+    Ok(Done::Passed(targets.join(", ")))
 }
 
 fn hygiene(root: &Path) -> Outcome<Done> {
@@ -233,6 +246,18 @@ mod tests {
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), VARIANTS.len());
+    }
+
+    #[test]
+    fn flags_of_variants_are_one_word() {
+        assert!(VARIANTS.iter().all(|variant| !variant.rustflag.contains(char::is_whitespace)));
+    }
+
+    #[test]
+    fn missing_parts_of_the_product_fail_their_rungs() {
+        let nowhere = Path::new("no-such-folder");
+        assert!(same_bits(nowhere).unwrap_err().contains(TRACE_EXAMPLE));
+        assert!(fuzz_rung(nowhere).unwrap_err().contains("fuzz/Cargo.toml"));
     }
 
     #[test]

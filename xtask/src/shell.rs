@@ -80,7 +80,7 @@ impl Cmd {
         let mut command = Command::new(&self.program);
         command.args(&self.args).current_dir(&self.dir).stdin(Stdio::null());
         // Set by the `cargo run` that started this program. A child must choose its own: with CARGO inherited,
-        // `rustup run nightly cargo ..` would mix the pinned cargo with the nightly compiler.
+        // `rustup run CHANNEL cargo ..` could mix the cargo of one toolchain with the compiler of another.
         for inherited in ["CARGO", "CARGO_MANIFEST_DIR", "CARGO_MANIFEST_PATH"] {
             command.env_remove(inherited);
         }
