@@ -34,7 +34,7 @@ const PROGRAM: &str = "controller-sim";
 const DEMO_NAMES: [&str; 3] = ["MOMI", "DRMO", "DE-MOMI"];
 
 /// The example that prints one hash per trace.
-const TRACE_EXAMPLE: &str = "tests/examples/trace_hash.rs";
+const TRACE_EXAMPLE: &str = "controller-core/examples/trace_hash.rs";
 
 /// A way to build the trace example.
 struct Variant {
@@ -163,7 +163,7 @@ fn same_bits(root: &Path) -> Outcome<Done> {
             // Always set, if only to nothing: of all the places flags can come from, this one shuts out the others, so
             // that no flag of the caller makes two variants the same build. Words in it are not parted by blanks.
             .env("CARGO_ENCODED_RUSTFLAGS", variant.rustflag)
-            .args(["run", "-p", "controller-tests", "--example", "trace_hash", "--target-dir"])
+            .args(["run", "-p", "controller-core", "--example", "trace_hash", "--target-dir"])
             .arg(folder)
             .args(variant.args);
         outputs.push((variant.name, cmd.capture()?));
