@@ -35,6 +35,12 @@ impl<T: Real> Deadband<T> {
         check.finish(Self { width: coefficient(width) })
     }
 
+    /// Half width \[y\].
+    #[must_use]
+    pub fn width(&self) -> T {
+        self.width
+    }
+
     /// The measurement as the PID is to see it \[y\].
     #[must_use]
     #[inline(always)]

@@ -115,6 +115,16 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
         self.delay < state.line.capacity()
     }
 
+    /// Gives `state` as many lags as this law has, when it was made for a law of another shape.
+    fn reshape(&self, state: &mut AnyCompensatorState<T, M>) {
+        let zero = Lag::settled(T::ZERO);
+        if state.y.len() != self.g.len() || state.e.len() != self.e_gain.len() {
+            state.y = core::iter::repeat_n(zero, self.g.len()).collect();
+            state.u = state.y.clone();
+            state.e = core::iter::repeat_n(zero, self.e_gain.len()).collect();
+        }
+    }
+
     /// Order of the chains and number of excess sections.
     #[must_use]
     pub fn shape(&self) -> (usize, usize) {
@@ -164,6 +174,7 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
     }
 
     fn settle(&self, state: &mut Self::State, y0: T, u0: T) {
+        self.reshape(state);
         state.view().settle(&self.coefficients(), y0, u0);
     }
 
@@ -188,10 +199,7 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
             state.reference = d_hat + estimate(self, state);
             (old.gain - self.gain) * d_hat
         } else {
-            let zero = Lag::settled(T::ZERO);
-            state.y = core::iter::repeat_n(zero, self.g.len()).collect();
-            state.u = state.y.clone();
-            state.e = core::iter::repeat_n(zero, self.e_gain.len()).collect();
+            self.reshape(state);
             let next = state.as_ref().next_tap(self.delay, u);
             state.reference = self.coefficients().settle(&mut state.view().lags, y, next);
             old.gain * d_hat
@@ -208,6 +216,10 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
 
     fn bounds(&self) -> (f64, f64) {
         self.coefficients().bounds()
+    }
+
+    fn reach(&self, state: &Self::State, y: f64, u: f64) -> f64 {
+        state.as_ref().reach(&self.coefficients(), y, u)
     }
 
     fn words(state: &Self::State) -> usize {

@@ -200,6 +200,10 @@ pub trait Compensate<T: Real>: Sealed {
     /// Bounds of every number of a step per unit of `|y|` and of `|u|`.
     fn bounds(&self) -> (f64, f64);
 
+    /// The largest number that any later step can reach from `state`, for measurements up to `y` and outputs up to `u` in
+    /// size.
+    fn reach(&self, state: &Self::State, y: f64, u: f64) -> f64;
+
     /// Number of words a snapshot of the state needs.
     fn words(state: &Self::State) -> usize;
 

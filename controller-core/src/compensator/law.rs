@@ -256,6 +256,10 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
         self.coefficients().bounds()
     }
 
+    fn reach(&self, state: &Self::State, y: f64, u: f64) -> f64 {
+        state.as_ref().reach(&self.coefficients(), y, u)
+    }
+
     fn words(state: &Self::State) -> usize {
         state.as_ref().words()
     }

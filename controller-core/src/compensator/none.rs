@@ -38,6 +38,9 @@ impl<T: Real> Compensate<T> for NoCompensator {
     fn bounds(&self) -> (f64, f64) {
         (0.0, 0.0)
     }
+    fn reach(&self, _: &(), _: f64, _: f64) -> f64 {
+        0.0
+    }
     fn words(_: &()) -> usize {
         0
     }

@@ -97,6 +97,58 @@ impl<T: Real, M: Memory<T>> StateRef<'_, T, M> {
         (2 * lags + 1 + self.line.capacity()) * T::WORDS + 2
     }
 
+    /// The largest number that any later step can reach from here, for inputs up to `y` and `u` in size: a lag stays
+    /// within the larger of itself and its input.
+    pub(super) fn reach(&self, law: &Coefficients<'_, T>, y: f64, u: f64) -> f64 {
+        let size = |x: &T| x.to_f64().abs();
+        let held = |lag: &Lag<T>, input: f64| {
+            let state: f64 = lag.parts().iter().map(size).sum();
+            if state > input { state } else { input }
+        };
+        let mut worst = 0.0_f64;
+        let mut note = |x: f64| {
+            // Written so that a NaN is noted, too.
+            worst = if x <= worst { worst } else { x };
+            x
+        };
+
+        let cells = self.line.parts().0.as_ref().iter().map(size);
+        let mut x = note(cells.fold(u, |largest, c| if c > largest { c } else { largest }));
+        let mut from_u = 0.0;
+        for (lag, lead) in self.u.iter().zip(law.u_lead) {
+            let w = note(held(lag, x));
+            from_u += note(size(lead) * (x + w));
+            x = w;
+        }
+        from_u = note(from_u + x);
+
+        let mut x = y;
+        let sections = law.y_feed.chunks(2).zip(law.y_lead.chunks(2)).zip(law.y_dc.chunks(2));
+        for (lags, ((feed, lead), dc)) in self.y.chunks(2).zip(sections) {
+            let dc = dc.last().map_or(0.0, size);
+            x = match (lags, feed, lead) {
+                ([one, two], [feed, _], [e1, e2]) => {
+                    let w1 = note(held(one, x));
+                    let x2 = note(w1 + size(feed) * (x + w1));
+                    let w2 = note(held(two, x2));
+                    note(dc * w2 + size(e2) * (x2 + w2) + size(e1) * (x + w1))
+                }
+                ([one], _, [lead, ..]) => {
+                    let w = note(held(one, x));
+                    note(dc * w + size(lead) * (x + w))
+                }
+                _ => x,
+            };
+        }
+        let mut estimate = note(from_u + size(&law.inv_gain) * x);
+        for (lag, gain) in self.e.iter().zip(law.e_gain) {
+            let w = note(held(lag, estimate));
+            estimate = note(w + size(gain) * (estimate + w));
+        }
+        note(estimate + size(&self.reference));
+        worst
+    }
+
     /// What the line will deliver in the next sample, after `u` has been pushed.
     pub(super) fn next_tap(&self, delay: usize, u: T) -> T {
         if delay == 0 { u } else { self.line.tap(delay - 1) }

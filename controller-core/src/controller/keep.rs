@@ -47,9 +47,12 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     ///
     /// The lags and the delay line are signals and are kept; the integral term absorbs the rest. With another
     /// sampling period the line's samples mean other times: the compensator then settles, its last output going
-    /// into the integral term.
+    /// into the integral term. A state whose signals are too large for the new gains settles where it is.
+    /// Cost: two steps of the blocks without their delay line, and one read of every cell of it.
     pub fn adopt(&self, old: &Self, state: &mut ControllerState<T, C::State>) {
         if !state.started {
+            // Nothing has happened yet; only the shape may have to change.
+            self.compensator.settle(&mut state.compensator, T::ZERO, T::ZERO);
             return;
         }
         state.r_asked = self.setpoint.into_range(state.r_asked);
@@ -61,6 +64,10 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             T::ZERO
         };
         state.v = u;
+        if !self.holds(state) {
+            self.settle_where_it_is(state);
+            return;
+        }
         let last = state.pid.input();
         let before = old.pid.preview(&state.pid, last);
         let after = self.pid.preview(&state.pid, self.seen(state.r.value(), state.y));
@@ -71,10 +78,43 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             -state.u_f
         };
         let jump = if state.compensating { jump } else { T::ZERO };
+        state.u_f = state.u_f + jump;
         state.pid.shift_integral((before - after) + (owed - jump));
         state.pid.bound_integral(self.integral_bound);
         // The last increment has been judged; the new rule must not judge it again.
         state.pid.forget_increment();
+    }
+
+    /// Whether the signals of `state`, which may come from a law with other ranges or from a snapshot, leave room for this
+    /// law's gains in the number type.
+    fn holds(&self, state: &ControllerState<T, C::State>) -> bool {
+        // The larger of a range and of what the state holds now.
+        let size = |(lo, hi): (T, T), now: [T; 2]| {
+            let [now, carry] = now.map(|x| x.magnitude().to_f64());
+            let ends = [lo, hi].map(|x| x.magnitude().to_f64());
+            ends.iter().fold(now + carry, |largest, &x| if x > largest { x } else { largest })
+        };
+        let r = size(self.setpoint.range(), [state.r.value(), state.r.carry()]);
+        let u = size(self.output_range(), [state.u.value(), state.u.carry()]);
+        let y = size(self.guard.range(), [state.y, T::ZERO]);
+        let seen = y + r + self.deadband.width().to_f64();
+        let signals = self.pid.reach(&state.pid, r, seen) + self.compensator.reach(&state.compensator, y, u);
+        let numbers = [state.u.carry(), state.r.carry(), state.u.value(), state.r.value()];
+        let more = [state.v, state.pd, state.u_f, state.y, state.r_asked, state.offset];
+        let own: f64 = numbers.iter().chain(&more).map(|x| x.magnitude().to_f64()).sum();
+        signals + state.pid.integral_size() + own <= 1e-2 * T::LARGEST
+    }
+
+    /// Everything at rest at the last measurement and output, moved into this law's ranges.
+    fn settle_where_it_is(&self, state: &mut ControllerState<T, C::State>) {
+        let (y_lo, y_hi) = self.guard.range();
+        state.y = state.y.clamp_to(y_lo, y_hi);
+        let u = self.limit.into_range(state.u.value());
+        let r = self.setpoint.into_range(state.r.value());
+        state.r.set(r);
+        self.compensator.settle(&mut state.compensator, state.y, u);
+        self.pid.settle(&mut state.pid, self.seen(r, state.y), u);
+        (state.v, state.u_f) = (u, T::ZERO);
     }
 
     /// Tells the loop that `n` samples were lost while its last output was applied.
@@ -154,7 +194,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// compensator) and is left alone when anything is wrong.
     ///
     /// # Errors
-    /// Another version or shape, a wrong checksum, a number that is not finite.
+    /// Another version or shape, a wrong checksum, a number that is not finite or too large for this law.
     pub fn restore(
         &self,
         state: &mut ControllerState<T, C::State>,
@@ -163,7 +203,8 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let mut fresh = state.clone();
         snapshot::read::<T, ()>(words, Self::body_words(state), |reader| {
             fresh.restore_own(reader)?;
-            C::restore(&mut fresh.compensator, reader)
+            C::restore(&mut fresh.compensator, reader)?;
+            self.holds(&fresh).then_some(())
         })?;
         *state = fresh;
         Ok(())

@@ -215,10 +215,12 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
 
     /// Where a mode wants the output \[u\]; `None`: where it is.
     fn target(&self, mode: Mode, input: &ControllerInput<T>) -> Option<T> {
+        let finite = |x: &T| x.is_finite_number();
+        let within = |x: T| self.limit.into_range(x);
         match mode {
             Mode::Off => self.off_output,
-            Mode::Manual => input.manual.filter(|x| x.is_finite_number()),
-            Mode::Track => Some(input.track).filter(|x| x.is_finite_number()),
+            Mode::Manual => input.manual.filter(finite).map(within),
+            Mode::Track => Some(input.track).filter(finite).map(within),
             Mode::Fallback => self.guard.fallback_output().0,
             Mode::Hold | Mode::Auto | Mode::Cascade => None,
         }

@@ -194,6 +194,22 @@ impl<T: Real> Pid<T> {
             + 2.0 * size(self.integral_gain())
     }
 
+    /// The largest number that the filtered terms and an increment can reach from `state`, for inputs up to `r` and `y` in
+    /// size.
+    pub(crate) fn reach(&self, state: &PidState<T>, r: f64, y: f64) -> f64 {
+        let size = |x: &T| x.to_f64().abs();
+        let sum = |list: &[T]| list.iter().map(size).sum::<f64>();
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let (w_r, w_y) = (larger(sum(&state.r_lag.parts()), r), larger(sum(&state.y_lag.parts()), y));
+        let filtered = size(&self.p_r) * w_r
+            + size(&self.h_r) * (r + w_r)
+            + size(&self.p_y) * w_y
+            + size(&self.h_y) * (y + w_y);
+        let increment =
+            (size(&self.ki_now) + size(&self.ki_before)) * (r + y + size(&state.r) + size(&state.y));
+        filtered + increment
+    }
+
     /// The smallest constant error \[y\] that still moves the integral term when that term is of size `level` \[u\];
     /// infinite without an integral term.
     ///
@@ -280,6 +296,12 @@ impl<T: Real> PidState<T> {
         if !inside {
             self.integral.set(i.clamp_to(-most, most));
         }
+    }
+
+    /// Size of the integral term, its carry and its last increment together.
+    pub(crate) fn integral_size(&self) -> f64 {
+        let [i, carry, .., increment] = self.parts();
+        [i, carry, increment].iter().map(|x| x.magnitude().to_f64()).sum()
     }
 
     /// The numbers of the state, for a snapshot.
