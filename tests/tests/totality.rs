@@ -15,6 +15,8 @@ mod configs;
 mod draw;
 #[path = "totality/driven.rs"]
 mod driven;
+#[path = "totality/good.rs"]
+mod good;
 #[path = "totality/pinned.rs"]
 mod pinned;
 #[path = "totality/recovery.rs"]
@@ -24,7 +26,7 @@ mod runner;
 #[path = "totality/snapshots.rs"]
 mod snapshots;
 
-use built::{AnyBlock, Block, Built};
+use built::{AnyBlock, Block, Built, OPERATION_BYTES};
 use configs::Case;
 use controller_core::{NoCompensator, Real};
 use driven::drive;
@@ -74,7 +76,7 @@ fn double_precision_loops_with_any_compensator() {
 }
 
 fn intact<T: Real, C: Block<T>>() {
-    for_all(3000, &(config_bytes(), vec(any::<u8>(), 128)), |(config, bytes)| {
+    for_all(3000, &(config_bytes(), vec(any::<u8>(), OPERATION_BYTES + 64)), |(config, bytes)| {
         Built::<T, C>::new(&Case::draw(&config, None)).map_or(Ok(()), |built| overwrite(&built, &bytes))
     });
 }

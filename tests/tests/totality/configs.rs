@@ -15,7 +15,7 @@ use controller_core::{
 pub(crate) const CAPACITY: usize = 24;
 
 /// Bytes that one configuration reads at most; more would read as zero.
-pub(crate) const CONFIG_BYTES: usize = 224;
+pub(crate) const CONFIG_BYTES: usize = 160;
 
 /// A loop as it is written, not yet built.
 #[derive(Debug, Clone)]
@@ -33,9 +33,10 @@ impl Case {
         let ts = same_ts.filter(|_| !draw.rarely(8)).unwrap_or(own);
         let (measurement_lo, measurement_hi) = range(&mut draw);
         let (offset_lo, offset_hi) = range(&mut draw);
+        let limits = limits(&mut draw);
         let config = ControllerConfig {
             pid: pid(&mut draw, ts),
-            limits: limits(&mut draw),
+            limits,
             setpoint: setpoint(&mut draw),
             anti_windup: anti_windup(&mut draw, ts),
             deadband: if draw.rarely(4) { draw.decades(-12.0, 12.0) } else { 0.0 },
@@ -43,12 +44,16 @@ impl Case {
             measurement_hi,
             offset_lo,
             offset_hi,
-            fallback: fallback(&mut draw),
+            fallback: fallback(&mut draw, limits),
             alarms: alarms(&mut draw),
-            off_output: if draw.flag() { Some(draw.signed_decades(-3.0, 12.0)) } else { None },
+            off_output: if draw.flag() { Some(draw.between(limits.lo, limits.hi)) } else { None },
             initial_output: if draw.flag() { draw.signed_decades(-3.0, 12.0) } else { 0.0 },
         };
-        Self { ts, config, block: block(&mut draw, ts) }
+        let mut block = block(&mut draw, ts);
+        // The integral action and the model have the same sign.
+        let [_, ki, _] = config.pid.signed_gains();
+        block.model.gain *= if ki * block.model.gain < 0.0 { -1.0 } else { 1.0 };
+        Self { ts, config, block }
     }
 }
 
@@ -132,8 +137,8 @@ fn anti_windup(draw: &mut Draw<'_>, ts: f64) -> AntiWindupConfig {
     }
 }
 
-fn fallback(draw: &mut Draw<'_>) -> FallbackConfig {
-    let output = draw.signed_decades(-3.0, 12.0);
+fn fallback(draw: &mut Draw<'_>, limits: LimitConfig) -> FallbackConfig {
+    let output = draw.between(limits.lo, limits.hi);
     FallbackConfig {
         hold_samples: match draw.index(8) {
             0..4 => 3,

@@ -16,21 +16,6 @@ macro_rules! ensure {
     };
 }
 
-impl<T: Real, C: Block<T>> Built<T, C> {
-    /// An input that nothing is wrong with: everything in the middle of its range, acknowledged.
-    pub(crate) fn good(&self) -> ControllerInput<T> {
-        let middle = |lo: f64, hi: f64| T::from_f64(0.5 * lo + 0.5 * hi);
-        let (y_lo, y_hi) = self.measurement();
-        let config = &self.case.config;
-        ControllerInput {
-            y: middle(config.measurement_lo, config.measurement_hi).clamp_to(y_lo, y_hi),
-            r: middle(config.setpoint.lo, config.setpoint.hi),
-            acknowledge: true,
-            ..ControllerInput::default()
-        }
-    }
-}
-
 /// What the documentation says of bad samples in a row.
 #[derive(Clone, Default)]
 struct Expected {
@@ -143,7 +128,7 @@ impl<'a, T: Real, C: Block<T>> Driven<'a, T, C> {
         }
         if !good {
             self.expected.fallback |= self.expected.bad >= u32::from(policy.hold_samples);
-            self.expected.bad += 1;
+            self.expected.bad = self.expected.bad.saturating_add(1);
         }
         (good, false, false)
     }
@@ -153,7 +138,9 @@ impl<'a, T: Real, C: Block<T>> Driven<'a, T, C> {
         let Built { case, law } = self.built();
         law.advance(&mut self.state, n);
         if self.state.is_started() {
-            self.expected.settle |= n > u32::from(case.config.fallback.hold_samples);
+            // Lost samples are bad samples.
+            self.expected.bad = self.expected.bad.saturating_add(n);
+            self.expected.settle |= self.expected.bad > u32::from(case.config.fallback.hold_samples);
         }
     }
 
