@@ -102,6 +102,7 @@ const CASES: &[Case] = &[
     (&[(PLANT, "exp(-s/(1+s)")], &[("expression", 6, 10, "never closed", "")]),
     // events
     (&[("at = 10.0\n", "")], &[("missing-key", 12, 1, "`at` is missing", "at = 10.0")]),
+    (&[("at = 0.0", "at = 19.995")], &[("out-of-range", 9, 6, "`at = 19.995` comes after the last of the 2000 samples", "only a disturbance")]),
     (&[("at = 10.0", "at = 30.0")], &[("out-of-range", 13, 6, "`at = 30.0` is not before the end of the run; allowed: 0 s to below `duration`, 20 s", "longer")]),
     (&[("at = 10.0", "at = -1.0")], &[("out-of-range", 13, 6, "`at = -1.0` is before the run begins", "[initial]")]),
     (&[(EVENT, "disturbance = { ramp = 1, pulse = 1, duration = 1 }")], &[("conflict", 14, 15, "`ramp` and `pulse`; one of them", "{ step = 1.0 }")]),

@@ -8,6 +8,7 @@ use super::suggest::closest;
 use super::table::{Located, Table, shortened};
 use super::trial::{self, Context};
 use super::{Change, Disturbance, Event};
+use crate::simulate::sample_of;
 use std::ops::Range;
 
 /// Most samples that one event makes bad or loses.
@@ -47,6 +48,7 @@ pub(super) fn read(
             table.log.fault(Fault::new(code::MISSING_KEY, table.place.clone(), message).help(help));
         }
         changes.sort_by_key(|(span, _)| span.start);
+        check_not_late(&table, at, &changes, duration, context);
         table.finish();
         if let Some(at) = at {
             let (spans, changes) = changes.into_iter().unzip();
@@ -85,6 +87,28 @@ fn read_time(table: &Table<'_>, duration: Option<f64>) -> Option<f64> {
         fault.help("make the run longer, or the event earlier")
     });
     None
+}
+
+/// Everything but a disturbance takes effect with the next sample: there must be one.
+fn check_not_late(
+    table: &Table<'_>,
+    at: Option<f64>,
+    changes: &[PlacedChange],
+    duration: Option<f64>,
+    context: &Context,
+) {
+    let (Some(at), Some(duration), Some(ts), Some(span)) = (at, duration, context.ts, table.span("at"))
+    else {
+        return;
+    };
+    let waits = changes.iter().any(|(_, change)| !matches!(change, Change::Disturbance(_)));
+    let samples = sample_of(duration, ts);
+    if waits && sample_of(at, ts) >= samples {
+        let raw = table.log.slice(&span);
+        let message = format!("`at = {raw}` comes after the last of the {samples} samples");
+        let help = "only a disturbance begins between samples; make the run longer, or the event earlier";
+        table.log.fault(Fault::new(code::OUT_OF_RANGE, span, message).help(help));
+    }
 }
 
 /// The controller the event is restricted to: none when there is no such name, else the index or all.
