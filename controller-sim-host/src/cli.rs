@@ -133,7 +133,7 @@ fn run_demo(arguments: &DemoArguments) -> Result<(), Failure> {
     let source = Source { name: demo::NAME, text: demo::SCENARIO };
     let precision = arguments.precision.into();
     let Read { scenario, warnings } = read_scenario(source, precision)?;
-    let result = simulate(&scenario, RunOptions { precision, trace: false })?;
+    let result = simulate(&scenario, RunOptions { precision, trace: false, ..RunOptions::default() })?;
     show(source, &scenario, precision, &result, &warnings, arguments.json)?;
     if !arguments.json {
         print(demo::TRY_NEXT)?;
@@ -153,7 +153,8 @@ fn run_file(arguments: &RunArguments) -> Result<(), Failure> {
         Some(path) => Some(csv_target(path, arguments, &scenario)?),
         None => None,
     };
-    let result = simulate(&scenario, RunOptions { precision, trace: csv.is_some() })?;
+    let result =
+        simulate(&scenario, RunOptions { precision, trace: csv.is_some(), ..RunOptions::default() })?;
     if let Some(csv) = &csv {
         csv.write(|to| write_csv(&result, to)).map_err(|problem| Failure::Other(problem, EXIT_INTERNAL))?;
     }

@@ -8,8 +8,7 @@ use controller_core::{
 use controller_design::model::parse;
 use controller_sim_host::demo;
 use controller_sim_host::scenario::{
-    Actuator, Change, CompensatorSpec, ControllerSpec, Disturbance, Event, Initial, Noise, Scenario, code,
-    read,
+    Actuator, Change, CompensatorSpec, ControllerSpec, Event, Initial, Noise, Scenario, Signal, code, read,
 };
 use controller_sim_host::simulate::Precision;
 
@@ -26,7 +25,7 @@ fn the_run_and_its_surroundings() {
     assert_eq!(Ok(s.plant), parse("2*exp(-s)/(1+5*s)"));
     assert_eq!(s.initial, Initial { setpoint: 1.0, disturbance: 0.25 });
     assert_eq!(s.noise, Some(Noise { std: 0.01, seed: 42 }));
-    assert_eq!(s.actuator, Actuator { lo: -5.0, hi: 5.0, read_back: true });
+    assert_eq!(s.actuator, Actuator { lo: -5.0, hi: 5.0, read_back: true, ..Actuator::default() });
 }
 
 #[test]
@@ -106,9 +105,9 @@ fn events_in_the_order_of_time_and_changes_in_the_order_written() {
     let times: Vec<f64> = events.iter().map(|event| event.at).collect();
     assert_eq!(times, [10.0, 10.0, 20.0, 20.0, 30.0, 40.0, 50.0]);
     let expected = vec![
-        Change::Setpoint(2.0),
-        Change::RemoteSetpoint(3.0),
-        Change::Disturbance(Disturbance::Ramp { slope: 0.5, duration: 4.0 }),
+        Change::Setpoint(Signal::Step(2.0)),
+        Change::RemoteSetpoint(Signal::Step(3.0)),
+        Change::Disturbance(Signal::Ramp { slope: 0.5, duration: 4.0 }),
         Change::Mode(Mode::Cascade),
         Change::Manual(0.5),
         Change::Track(0.75),
@@ -118,12 +117,12 @@ fn events_in_the_order_of_time_and_changes_in_the_order_written() {
         Change::LostSamples(2),
         Change::Acknowledge,
     ];
-    assert_eq!(events[0], Event { at: 10.0, changes: expected, controller: None });
+    assert_eq!(events[0], Event { at: 10.0, label: String::new(), changes: expected, controller: None });
     let disturbances: Vec<&Change> = events[1..4].iter().flat_map(|event| &event.changes).collect();
     let expected = [
-        Change::Disturbance(Disturbance::Step(1.0)),
-        Change::Disturbance(Disturbance::Pulse { height: 1.0, duration: 0.5 }),
-        Change::Disturbance(Disturbance::Ramp { slope: -0.5, duration: f64::INFINITY }),
+        Change::Disturbance(Signal::Step(1.0)),
+        Change::Disturbance(Signal::Pulse { height: 1.0, duration: 0.5 }),
+        Change::Disturbance(Signal::Ramp { slope: -0.5, duration: f64::INFINITY }),
     ];
     assert_eq!(disturbances, expected.iter().collect::<Vec<_>>());
 }

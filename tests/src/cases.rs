@@ -7,7 +7,7 @@ use controller_core::plant_model::{Factor, PlantModel};
 use controller_core::{EstimatorConfig, IntegralRule, LimitConfig, ObserverConfig, PidConfig};
 use controller_design::model::{TransferFunction, parse};
 use controller_sim_host::scenario::{
-    Actuator, Change, ControllerSpec, Disturbance, Event, Initial, Scenario,
+    Actuator, Change, ControllerSpec, Event, Initial, Scenario, Sensor, Signal, Units,
 };
 
 /// The process as a model for a disturbance block.
@@ -98,23 +98,28 @@ pub fn from_rest(
     controllers: Vec<ControllerSpec>,
 ) -> Scenario {
     Scenario {
+        title: String::new(),
+        description: String::new(),
+        units: Units::default(),
         ts,
         duration,
         latency: 0.0,
         substeps: 20,
         plant: transfer_function(plant),
+        inner_plant: None,
         initial: Initial::default(),
-        events: vec![Event { at: 0.0, changes: vec![change], controller: None }],
+        events: vec![Event { at: 0.0, label: String::new(), changes: vec![change], controller: None }],
         controllers,
         noise: None,
+        sensor: Sensor::default(),
         actuator: Actuator::default(),
     }
 }
 
 /// A unit step of the set-point.
-pub const SETPOINT_STEP: Change = Change::Setpoint(1.0);
+pub const SETPOINT_STEP: Change = Change::Setpoint(Signal::Step(1.0));
 /// A unit step of the disturbance at the plant input.
-pub const DISTURBANCE_STEP: Change = Change::Disturbance(Disturbance::Step(1.0));
+pub const DISTURBANCE_STEP: Change = Change::Disturbance(Signal::Step(1.0));
 
 /// The same controller with an output range.
 #[must_use]

@@ -14,7 +14,12 @@ fn result(case: &DeCase, change: &Change, bad: Option<(f64, u32)>) -> RunResult 
     let spec = chapter_controllers(case).remove(2);
     let mut scenario: Scenario = from_rest(&case.plant, case.ts, case.horizon, change.clone(), vec![spec]);
     if let Some((at, n)) = bad {
-        scenario.events.push(Event { at, changes: vec![Change::BadSamples(n)], controller: None });
+        scenario.events.push(Event {
+            at,
+            label: String::new(),
+            changes: vec![Change::BadSamples(n)],
+            controller: None,
+        });
     }
     run(&scenario, RunOptions { trace: true, ..RunOptions::default() }).expect("valid parameters")
 }

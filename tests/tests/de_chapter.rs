@@ -11,7 +11,8 @@ use controller_tests::oracle::structure_a::{StructureA, respond};
 /// Metrics of MOMI, DRMO, DE-MOMI for one experiment.
 fn metrics(case: &DeCase, change: Change, precision: Precision) -> [Metrics; 3] {
     let scenario = from_rest(&case.plant, case.ts, case.horizon, change, chapter_controllers(case));
-    let result = run(&scenario, RunOptions { precision, trace: false }).expect("valid parameters");
+    let result = run(&scenario, RunOptions { precision, trace: false, ..RunOptions::default() })
+        .expect("valid parameters");
     [0, 1, 2].map(|i| result.controllers[i].total)
 }
 

@@ -50,7 +50,8 @@ fn the_scenarios_that_come_along_run() {
         let text = std::fs::read_to_string(&path).expect("text");
         for precision in [Precision::F64, Precision::F32] {
             let read = read(&text, precision).unwrap_or_else(|f| panic!("{}: {f:?}", path.display()));
-            let result = run(&read.scenario, RunOptions { precision, trace: false }).expect("valid");
+            let result = run(&read.scenario, RunOptions { precision, trace: false, ..RunOptions::default() })
+                .expect("valid");
             assert!(result.controllers.iter().all(|c| c.total.iae.is_finite() && c.total.iae > 0.0));
         }
         count += 1;

@@ -2,7 +2,7 @@
 //! sampling grid, all exact.
 
 use controller_core::{LimitConfig, PidConfig};
-use controller_sim_host::scenario::{Change, ControllerSpec, Disturbance, Event, Initial, Noise};
+use controller_sim_host::scenario::{Change, ControllerSpec, Event, Initial, Noise, Signal};
 use controller_sim_host::simulate::{ClosedLoop, EventKind, Metrics, Precision, RunOptions, run};
 use controller_tests::cases::{SETPOINT_STEP, from_rest, transfer_function};
 use controller_tests::oracle::state_space::PlantFactors;
@@ -53,10 +53,10 @@ fn disturbances_off_the_grid_follow_closed_forms() {
     let step = |t: f64| if t > 0.0 { gain * (1.0 - (-t / tau).exp()) } else { 0.0 };
     let ramp = |t: f64| if t > 0.0 { gain * (t - tau * (1.0 - (-t / tau).exp())) } else { 0.0 };
     let list = [
-        (0.313, Disturbance::Step(1.5)),
-        (0.5, Disturbance::Ramp { slope: 0.8, duration: 1.017 }),
-        (0.777, Disturbance::Pulse { height: -2.0, duration: 0.0311 }),
-        (1.9, Disturbance::Step(0.25)),
+        (0.313, Signal::Step(1.5)),
+        (0.5, Signal::Ramp { slope: 0.8, duration: 1.017 }),
+        (0.777, Signal::Pulse { height: -2.0, duration: 0.0311 }),
+        (1.9, Signal::Step(0.25)),
     ];
     let exact = |t: f64| {
         let t = t - dead;
@@ -107,15 +107,17 @@ fn a_run_starts_at_rest_and_is_divided_by_its_events() {
     for (plant, precision) in
         [(&PLANTS[0], Precision::F64), (&PLANTS[4], Precision::F64), (&PLANTS[0], Precision::F32)]
     {
-        let mut scenario = from_rest(plant, 0.05, 30.0, Change::Setpoint(4.0), vec![pi("a")]);
+        let mut scenario = from_rest(plant, 0.05, 30.0, Change::Setpoint(Signal::Step(4.0)), vec![pi("a")]);
         scenario.initial = Initial { setpoint: 3.0, disturbance: 0.7 };
         scenario.events[0].at = 10.0;
         scenario.events.push(Event {
+            label: String::new(),
             at: 20.0,
-            changes: vec![Change::Disturbance(Disturbance::Step(0.2))],
+            changes: vec![Change::Disturbance(Signal::Step(0.2))],
             controller: None,
         });
-        let result = run(&scenario, RunOptions { precision, trace: true }).expect("valid");
+        let result =
+            run(&scenario, RunOptions { precision, trace: true, ..RunOptions::default() }).expect("valid");
         let one = &result.controllers[0];
         let kinds: Vec<_> = one.events.iter().map(|s| (s.at, s.kind)).collect();
         assert_eq!(

@@ -1,7 +1,7 @@
 //! Saturation: the loop comes back, with the estimator and the observer in it, and never locks up.
 
 use controller_core::{AntiWindupConfig, ControllerConfig, EstimatorConfig, LimitConfig, PidConfig};
-use controller_sim_host::scenario::{Actuator, Change, ControllerSpec, Disturbance, Scenario};
+use controller_sim_host::scenario::{Actuator, Change, ControllerSpec, Scenario, Signal};
 use controller_sim_host::simulate::{RunOptions, run};
 use controller_tests::cases::{SETPOINT_STEP, chapter_controllers, from_rest, limited, pi_with_observer};
 use controller_tests::oracle::de_cases::CASES;
@@ -34,7 +34,7 @@ fn tracking_of_gp5_with_a_limited_output() {
     let back = iae(&inside(BACK));
     let conditional = iae(&inside(AntiWindupConfig::Conditional));
     let none = iae(&inside(AntiWindupConfig::None));
-    let range = Actuator { lo: -2.0, hi: 2.0, read_back: true };
+    let range = Actuator { lo: -2.0, hi: 2.0, read_back: true, ..Actuator::default() };
     let downstream = iae(&scenario(with_rule(limited(spec.clone(), -100.0, 100.0), BACK), range));
     let blind = Actuator { read_back: false, ..range };
     let unsaturated = iae(&scenario(with_rule(limited(spec, -100.0, 100.0), BACK), blind));
@@ -51,7 +51,7 @@ fn tracking_of_gp5_with_a_limited_output() {
 #[test]
 fn an_observer_in_saturation() {
     let case = &dob_cases::CASES[1];
-    let pulse = Change::Disturbance(Disturbance::Pulse { height: 1.0, duration: 600.0 });
+    let pulse = Change::Disturbance(Signal::Pulse { height: 1.0, duration: 600.0 });
     let spec = pi_with_observer(&case.plant, case.kp, case.ki, Some(10.0));
     for per_dead_time in [20.0, 100.0] {
         let ts = case.plant.dead_time / per_dead_time;
@@ -62,7 +62,7 @@ fn an_observer_in_saturation() {
         let inside = |rule| scenario(with_rule(limited(spec.clone(), -0.6, 0.6), rule), Actuator::default());
         let conditional = iae(&inside(AntiWindupConfig::Conditional));
         let back = iae(&inside(BACK));
-        let range = Actuator { lo: -0.6, hi: 0.6, read_back: true };
+        let range = Actuator { lo: -0.6, hi: 0.6, read_back: true, ..Actuator::default() };
         let wide =
             |rule, actuator| iae(&scenario(with_rule(limited(spec.clone(), -50.0, 50.0), rule), actuator));
         let downstream = wide(BACK, range);

@@ -71,7 +71,12 @@ impl Draft {
         take(&table, "initial_output", Param::InitialOutput, &mut places, &mut config.initial_output);
         let mode = mode(&table).unwrap_or(Mode::Auto);
         table.finish();
-        Self { pid, spec: ControllerSpec { name, config, compensator, mode }, name_span, places }
+        Self {
+            pid,
+            spec: ControllerSpec { name, config, compensator, mode, secondary: None },
+            name_span,
+            places,
+        }
     }
 
     /// Reads the parameter keys of an event over what the controller had so far.

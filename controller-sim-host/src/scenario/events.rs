@@ -7,7 +7,7 @@ use super::sections::{mode, signal};
 use super::suggest::closest;
 use super::table::{Located, Table, shortened};
 use super::trial::{self, Context};
-use super::{Change, Disturbance, Event};
+use super::{Change, Event, Signal};
 use crate::simulate::sample_of;
 use std::ops::Range;
 
@@ -52,7 +52,10 @@ pub(super) fn read(
         table.finish();
         if let Some(at) = at {
             let (spans, changes) = changes.into_iter().unzip();
-            events.push(Placed { event: Event { at, changes, controller: controller.flatten() }, spans });
+            events.push(Placed {
+                event: Event { at, label: String::new(), changes, controller: controller.flatten() },
+                spans,
+            });
         }
     }
     events
@@ -172,7 +175,7 @@ fn read_changes(table: &Table<'_>) -> Vec<PlacedChange> {
     };
     add("setpoint", read_setpoint(table));
     add("disturbance", read_disturbance(table).map(Change::Disturbance));
-    add("remote_setpoint", signal(table, "remote_setpoint").map(Change::RemoteSetpoint));
+    add("remote_setpoint", signal(table, "remote_setpoint").map(|r| Change::RemoteSetpoint(Signal::Step(r))));
     add("mode", mode(table).map(Change::Mode));
     add("manual", signal(table, "manual").map(Change::Manual));
     add("track", signal(table, "track").map(Change::Track));
@@ -192,7 +195,7 @@ fn read_setpoint(table: &Table<'_>) -> Option<Change> {
         table.log.fault(Fault::new(code::WRONG_TYPE, span, message).help(help));
         return None;
     }
-    signal(table, "setpoint").map(Change::Setpoint)
+    signal(table, "setpoint").map(|r| Change::Setpoint(Signal::Step(r)))
 }
 
 fn read_count(table: &Table<'_>, key: &'static str) -> Option<u32> {
@@ -211,9 +214,9 @@ fn read_acknowledge(table: &Table<'_>) -> bool {
 
 /// `disturbance = 1.0`, `{ step = 1.0 }`, `{ ramp = 0.1, duration = 5.0 }` or `{ pulse = 1.0, duration = 0.5
 /// }`.
-fn read_disturbance(table: &Table<'_>) -> Option<Disturbance> {
+fn read_disturbance(table: &Table<'_>) -> Option<Signal> {
     if !table.is_table("disturbance") {
-        return signal(table, "disturbance").map(Disturbance::Step);
+        return signal(table, "disturbance").map(Signal::Step);
     }
     let part = table.table("disturbance", "`disturbance = { step = 1.0 }`")?;
     let kinds = ["step", "ramp", "pulse"];
@@ -246,18 +249,18 @@ fn read_disturbance(table: &Table<'_>) -> Option<Disturbance> {
                 let message = "a step has no `duration`";
                 log.fault(Fault::new(code::CONFLICT, span, message).help("a step that ends is a `pulse`"));
             }
-            step.map(Disturbance::Step)
+            step.map(Signal::Step)
         }
         "ramp" => {
             let duration = if duration_span.is_some() { length? } else { f64::INFINITY };
-            ramp.map(|slope| Disturbance::Ramp { slope: slope.value, duration })
+            ramp.map(|slope| Signal::Ramp { slope: slope.value, duration })
         }
         _ => {
             if duration_span.is_none() {
                 let message = "`disturbance.duration` is missing: a pulse has an end";
                 log.fault(Fault::new(code::MISSING_KEY, place, message).help(write));
             }
-            Some(Disturbance::Pulse { height: pulse?, duration: length? })
+            Some(Signal::Pulse { height: pulse?, duration: length? })
         }
     }
 }

@@ -14,6 +14,7 @@ mod places;
 mod ranges;
 mod read;
 mod sections;
+mod signal;
 mod suggest;
 mod syntax;
 mod table;
@@ -21,6 +22,7 @@ mod trial;
 
 pub use fault::{Fault, Place, Related, code};
 pub use read::{Read, VERSION, read};
+pub use signal::{Between, Recording, Signal};
 
 use controller_core::{ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
 use controller_design::model::TransferFunction;
@@ -28,6 +30,12 @@ use controller_design::model::TransferFunction;
 /// A whole scenario, checked: everything a run needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
+    /// Heads the report; empty: the name of the file does.
+    pub title: String,
+    /// What it shows and what to look at, for the report; paragraphs are divided by empty lines.
+    pub description: String,
+    /// What the signals are measured in.
+    pub units: Units,
     /// Sampling period \[s\].
     pub ts: f64,
     /// Length of the run \[s\].
@@ -36,8 +44,11 @@ pub struct Scenario {
     pub latency: f64,
     /// Steps per sample for the metrics and the trace between samples, 1 or more.
     pub substeps: usize,
-    /// The plant.
+    /// The plant, from the output of the actuator to the measurement.
     pub plant: TransferFunction,
+    /// The part of the plant that the actuator drives first, when it is measured on its own: what the secondary loop
+    /// of a cascade controls. [`plant`](Self::plant) is the whole, this part included.
+    pub inner_plant: Option<TransferFunction>,
     /// What held before `t = 0`.
     pub initial: Initial,
     /// What happens, in the order of `at`.
@@ -46,6 +57,8 @@ pub struct Scenario {
     pub controllers: Vec<ControllerSpec>,
     /// Noise on the measurement.
     pub noise: Option<Noise>,
+    /// What the measurement goes through before the controller gets it.
+    pub sensor: Sensor,
     /// What lies between the controller's output and the plant.
     pub actuator: Actuator,
 }
@@ -68,20 +81,55 @@ pub struct Noise {
     pub seed: u64,
 }
 
-/// An actuator with a range of its own.
+/// What the signals are measured in, for people. Empty: not said.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Units {
+    /// Of the measurement and the set-point.
+    pub y: String,
+    /// Of the controller's output.
+    pub u: String,
+}
+
+/// A sensor: the noisy measurement is moved into its range, then rounded to its resolution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensor {
+    /// Lowest value it shows \[y\].
+    pub lo: f64,
+    /// Highest value it shows \[y\].
+    pub hi: f64,
+    /// Smallest step it shows, counted from 0 \[y\]; 0: every number.
+    pub resolution: f64,
+}
+
+impl Default for Sensor {
+    fn default() -> Self {
+        Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, resolution: 0.0 }
+    }
+}
+
+/// An actuator. Every sample it takes the controller's output, moved into its range; keeps its position when that
+/// differs by no more than the dead band; goes towards it at most as fast as its rate; and stands at a multiple of its
+/// resolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Actuator {
     /// Lowest output it accepts \[u\].
     pub lo: f64,
     /// Highest output it accepts \[u\].
     pub hi: f64,
+    /// Fastest movement \[u/s\]; infinite: at once.
+    pub rate: f64,
+    /// Smallest step, counted from 0 \[u\]; 0: every number.
+    pub resolution: f64,
+    /// Changes up to this size do not move it \[u\].
+    pub deadband: f64,
     /// The controller is told what was accepted.
     pub read_back: bool,
 }
 
 impl Default for Actuator {
     fn default() -> Self {
-        Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, read_back: false }
+        let (lo, hi) = (f64::NEG_INFINITY, f64::INFINITY);
+        Self { lo, hi, rate: f64::INFINITY, resolution: 0.0, deadband: 0.0, read_back: false }
     }
 }
 
@@ -90,6 +138,8 @@ impl Default for Actuator {
 pub struct Event {
     /// When \[s\]. Disturbances begin exactly then, everything else with the next sample.
     pub at: f64,
+    /// What it is called in the report; empty: after what it changes.
+    pub label: String,
     /// What happens, in the order it was written.
     pub changes: Vec<Change>,
     /// Index of the one controller it is about; `None`: all.
@@ -99,12 +149,14 @@ pub struct Event {
 /// What an event changes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
-    /// The local set-point becomes this \[y\].
-    Setpoint(f64),
-    /// The remote set-point becomes this \[y\].
-    RemoteSetpoint(f64),
-    /// The disturbance at the plant input.
-    Disturbance(Disturbance),
+    /// The local set-point \[y\].
+    Setpoint(Signal),
+    /// The remote set-point \[y\].
+    RemoteSetpoint(Signal),
+    /// The disturbance at the plant input \[u\].
+    Disturbance(Signal),
+    /// The controller gets a recorded measurement \[y\] from now on; `None`: the plant's again.
+    Measurement(Option<std::sync::Arc<Recording>>),
     /// The requested mode becomes this.
     Mode(Mode),
     /// The manual output becomes this \[u\].
@@ -126,27 +178,6 @@ pub enum Change {
     Parameters(Vec<(usize, ControllerSpec)>),
 }
 
-/// A disturbance at the plant input. The steady level is that of the last step; ramps and pulses add to it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Disturbance {
-    /// The steady level becomes this \[u\] (ramps and pulses add to it).
-    Step(f64),
-    /// A ramp of `slope` [u/s] for `duration` \[s\] (infinite: to the end); the level it reached stays.
-    Ramp {
-        /// Slope [u/s].
-        slope: f64,
-        /// Length \[s\].
-        duration: f64,
-    },
-    /// A pulse of `height` \[u\] for `duration` \[s\].
-    Pulse {
-        /// Height \[u\].
-        height: f64,
-        /// Length \[s\].
-        duration: f64,
-    },
-}
-
 /// A controller of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControllerSpec {
@@ -158,6 +189,8 @@ pub struct ControllerSpec {
     pub compensator: CompensatorSpec,
     /// Requested mode at the start.
     pub mode: Mode,
+    /// The loop inside of a cascade, on [`Scenario::inner_plant`]: this controller's output is its remote set-point.
+    pub secondary: Option<Box<ControllerSpec>>,
 }
 
 /// The disturbance block of a controller.
@@ -182,6 +215,7 @@ impl ControllerSpec {
             config: ControllerConfig { pid, ..ControllerConfig::default() },
             compensator: CompensatorSpec::None,
             mode: Mode::Auto,
+            secondary: None,
         }
     }
 

@@ -5,7 +5,7 @@ use super::fault::{Fault, code};
 use super::log::Log;
 use super::number::show_short;
 use super::places::Places;
-use super::{Change, CompensatorSpec, ControllerSpec, Scenario};
+use super::{Change, CompensatorSpec, ControllerSpec, Scenario, Signal};
 use controller_core::Param;
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ pub(super) fn warn(scenario: &Scenario, index: usize, events: &[Placed], places:
                         parameters = Some(span);
                     }
                 }
-                Change::Setpoint(r) => now.setpoint = *r,
+                Change::Setpoint(Signal::Step(r)) => now.setpoint = *r,
                 Change::Manual(u) => now.manual = Some(*u),
                 _ => {}
             }
@@ -138,7 +138,7 @@ impl Now<'_> {
         };
         let limits = [config.limits.lo, config.limits.hi];
         let message = match change {
-            Change::Setpoint(r) | Change::RemoteSetpoint(r) => {
+            Change::Setpoint(Signal::Step(r)) | Change::RemoteSetpoint(Signal::Step(r)) => {
                 let remote = matches!(change, Change::RemoteSetpoint(_));
                 let what = if remote { "remote set-point" } else { "set-point" };
                 let measurement = [config.measurement_lo, config.measurement_hi];

@@ -11,7 +11,7 @@ use super::sections::signal;
 use super::syntax;
 use super::table::{Located, Table};
 use super::trial::{self, Context, LONGEST_DELAY, delay_fault};
-use super::{Actuator, Initial, Noise, Scenario};
+use super::{Actuator, Initial, Noise, Scenario, Sensor, Units};
 use crate::simulate::Precision;
 use controller_design::model::TransferFunction;
 use toml::de::DeTable;
@@ -130,15 +130,20 @@ fn read_root(root: Table<'_>, precision: Precision) -> Option<Scenario> {
         return None;
     }
     let scenario = Scenario {
+        title: String::new(),
+        description: String::new(),
+        units: Units::default(),
         ts: ts?,
         duration: duration?,
         latency,
         substeps: usize::try_from(substeps).ok()?,
         plant: context.plant?,
+        inner_plant: None,
         initial,
         events: events.iter().map(|placed| placed.event.clone()).collect(),
         controllers,
         noise,
+        sensor: Sensor::default(),
         actuator,
     };
     for (index, places) in places.iter().enumerate() {

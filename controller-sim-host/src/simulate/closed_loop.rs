@@ -2,7 +2,7 @@
 
 use super::disturbance::{Curve, SAME};
 use crate::plant::{Input, LinearPlant, StateSpace};
-use crate::scenario::Disturbance;
+use crate::scenario::Signal;
 use controller_design::model::TransferFunction;
 use std::collections::VecDeque;
 
@@ -52,7 +52,7 @@ impl ClosedLoop {
         latency: f64,
         substeps: usize,
         (y0, d0): (f64, f64),
-        disturbances: &[(f64, Disturbance)],
+        disturbances: &[(f64, Signal)],
     ) -> Option<(Self, f64)> {
         let system = StateSpace::new(plant, ts);
         let (x, w0) = system.rest(y0)?;

@@ -1,6 +1,6 @@
 //! The disturbance at the plant input as a piecewise linear curve.
 
-use crate::scenario::Disturbance;
+use crate::scenario::Signal;
 
 /// How near two instants count as one, in samples: decimal numbers must not make steps of length 1e-16.
 pub(super) const SAME: f64 = 1e-9;
@@ -23,26 +23,28 @@ pub(super) struct Curve {
 
 impl Curve {
     /// The curve that is `d0` before the first of `list`; every instant is shifted by `delay` \[s\].
-    pub(super) fn new(d0: f64, list: &[(f64, Disturbance)], delay: f64, ts: f64) -> Self {
+    pub(super) fn new(d0: f64, list: &[(f64, Signal)], delay: f64, ts: f64) -> Self {
         // Every disturbance as changes of level and slope at instants.
         let mut changes: Vec<(f64, f64, f64)> = Vec::new();
         let mut level = d0;
-        for &(at, disturbance) in list {
-            match disturbance {
-                Disturbance::Step(value) => {
+        for (at, signal) in list {
+            let at = *at;
+            match *signal {
+                Signal::Step(value) => {
                     changes.push((at, value - level, 0.0));
                     level = value;
                 }
-                Disturbance::Ramp { slope, duration } => {
+                Signal::Ramp { slope, duration } => {
                     changes.push((at, 0.0, slope));
                     if duration.is_finite() {
                         changes.push((at + duration, 0.0, -slope));
                     }
                 }
-                Disturbance::Pulse { height, duration } => {
+                Signal::Pulse { height, duration } => {
                     changes.push((at, height, 0.0));
                     changes.push((at + duration, -height, 0.0));
                 }
+                Signal::Sine { .. } | Signal::Walk { .. } | Signal::Recorded(_) => {}
             }
         }
         changes.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,18 +1,22 @@
 //! The sampled loop: the controller's own code against an exactly simulated plant.
 
 mod closed_loop;
+mod control;
 mod disturbance;
 mod law;
 mod metrics;
 mod noise;
+mod record;
 mod remarks;
 mod run;
 mod stretches;
 
 pub use closed_loop::{ClosedLoop, SubStep};
+pub use control::{Control, Sink};
 pub use law::AnyLaw;
 pub use metrics::Metrics;
 pub use noise::Gaussian;
+pub use record::{Band, COLUMNS, Envelope, Record, View};
 pub use remarks::Remark;
-pub use run::{ControllerResult, Precision, RunError, RunOptions, RunResult, Sample, run};
+pub use run::{ControllerResult, Precision, RunError, RunOptions, RunResult, Sample, run, run_with};
 pub use stretches::{EventKind, Stretch, sample_of};

@@ -1,13 +1,15 @@
 //! A run: every controller of a scenario, sample by sample.
 
 use super::closed_loop::ClosedLoop;
+use super::control::{Control, Sink};
 use super::disturbance::Curve;
 use super::law::AnyLaw;
 use super::metrics::Metrics;
 use super::noise::Gaussian;
+use super::record::{Record, View};
 use super::remarks::{Remark, Watch};
 use super::stretches::{Stretch, Stretches, sample_of};
-use crate::scenario::{Change, ControllerSpec, Disturbance, Scenario};
+use crate::scenario::{Change, ControllerSpec, Scenario, Signal};
 use controller_core::{ConfigErrors, ControllerInput, ControllerOutput, Mode, Quality, Real, Status};
 
 /// The number type the controllers run in.
@@ -21,12 +23,14 @@ pub enum Precision {
 }
 
 /// What a run keeps besides the metrics.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RunOptions {
     /// Number type of the controllers.
     pub precision: Precision,
     /// Keep every sample.
     pub trace: bool,
+    /// Record this part, for a picture.
+    pub record: Option<View>,
 }
 
 /// One sample of one controller.
@@ -40,6 +44,8 @@ pub struct Sample {
     pub y: f64,
     /// Controller output \[u\].
     pub u: f64,
+    /// What the actuator applies of it \[u\].
+    pub applied: f64,
     /// Compensator output \[u\].
     pub u_f: f64,
     /// Estimated disturbance \[u\].
@@ -63,6 +69,8 @@ pub struct ControllerResult {
     pub total: Metrics,
     /// Every sample, when asked for.
     pub trace: Vec<Sample>,
+    /// The signals for a picture, when asked for.
+    pub record: Option<Record>,
     /// What to know before trusting the figures: fallbacks, saturation, an error that does not die out.
     pub remarks: Vec<Remark>,
 }
@@ -89,6 +97,8 @@ pub enum RunError {
         /// The set-point asked for \[y\].
         setpoint: f64,
     },
+    /// It was stopped from outside.
+    Stopped,
 }
 
 impl std::fmt::Display for RunError {
@@ -98,6 +108,7 @@ impl std::fmt::Display for RunError {
             Self::NoRest { setpoint } => {
                 write!(f, "a plant with a zero at s = 0 cannot rest at the set-point {setpoint}")
             }
+            Self::Stopped => f.write_str("stopped"),
         }
     }
 }
@@ -110,13 +121,32 @@ impl std::error::Error for RunError {}
 /// # Errors
 /// A controller whose law cannot be built; a plant that cannot rest at the initial set-point.
 pub fn run(scenario: &Scenario, options: RunOptions) -> Result<RunResult, RunError> {
-    let one = |index| match options.precision {
-        Precision::F32 => run_one::<f32>(scenario, index, options.trace),
-        Precision::F64 => run_one::<f64>(scenario, index, options.trace),
-    };
-    let controllers = (0..scenario.controllers.len()).map(one).collect::<Result<_, _>>()?;
+    run_with(scenario, options, &Control::new(), None)
+}
+
+/// As [`run`], watched and stopped through `control`; `sink` takes every sample, controllers one after the other.
+///
+/// # Errors
+/// Those of [`run`]; stopped by `control` or by the sink.
+pub fn run_with(
+    scenario: &Scenario,
+    options: RunOptions,
+    control: &Control,
+    mut sink: Option<&mut dyn Sink>,
+) -> Result<RunResult, RunError> {
+    let mut controllers = Vec::new();
+    for index in 0..scenario.controllers.len() {
+        let one = match options.precision {
+            Precision::F32 => run_one::<f32>(scenario, index, options, control, &mut sink),
+            Precision::F64 => run_one::<f64>(scenario, index, options, control, &mut sink),
+        };
+        controllers.push(one?);
+    }
     Ok(RunResult { controllers })
 }
+
+/// Samples between two looks at the control.
+const CHECKED_EVERY: u64 = 4096;
 
 /// What the events have made of the controller's inputs.
 struct Requests<T> {
@@ -135,7 +165,13 @@ impl<T> Requests<T> {
     }
 }
 
-fn run_one<T: Real>(scenario: &Scenario, index: usize, trace: bool) -> Result<ControllerResult, RunError> {
+fn run_one<T: Real>(
+    scenario: &Scenario,
+    index: usize,
+    options: RunOptions,
+    control: &Control,
+    sink: &mut Option<&mut dyn Sink>,
+) -> Result<ControllerResult, RunError> {
     let spec = &scenario.controllers[index];
     let refused = |faults| RunError::Controller { index, faults: Box::new(faults) };
     let (ts, initial) = (scenario.ts, scenario.initial);
@@ -162,9 +198,20 @@ fn run_one<T: Real>(scenario: &Scenario, index: usize, trace: bool) -> Result<Co
     let mut samples = Vec::new();
     let mut next_event = 0;
     let count = sample_of(scenario.duration, ts);
+    let mut record = options.record.map(|view| Record::new(view, ts, count));
+    if sink.as_deref_mut().is_some_and(|sink| sink.begin(index, &spec.name).is_break()) {
+        return Err(RunError::Stopped);
+    }
+    let watched = options.trace || record.is_some() || sink.is_some();
     let (mut u, mut output) = (u0, ControllerOutput { mode: spec.mode, ..ControllerOutput::default() });
 
     for k in 0..count {
+        if k % CHECKED_EVERY == 0 && k > 0 {
+            control.add(CHECKED_EVERY);
+            if control.is_stopped() {
+                return Err(RunError::Stopped);
+            }
+        }
         while let Some(event) = scenario.events.get(next_event).filter(|e| sample_of(e.at, ts) <= k) {
             next_event += 1;
             if event.controller.is_none_or(|only| only == index) {
@@ -198,17 +245,34 @@ fn run_one<T: Real>(scenario: &Scenario, index: usize, trace: bool) -> Result<Co
         stretches.sample(t, ts, r - exact, before, u);
         let automatic = output.mode.is_automatic();
         watch.sample(t, k as f64 / count as f64, r - exact, output.status, automatic);
-        if trace {
+        let band = record.as_ref().map_or(0, |record| record.band(k));
+        if watched {
             let d = disturbance.advance_to(k as f64);
             let (u_f, d_hat) = (output.u_f.to_f64(), output.d_hat.to_f64());
             let status = if lost { output.status | Status::OVERRUN } else { output.status };
-            samples.push(Sample { t, r, y, u, u_f, d_hat, d, mode: output.mode, status });
+            let sample = Sample { t, r, y, u, applied, u_f, d_hat, d, mode: output.mode, status };
+            if let Some(record) = &mut record {
+                record.sample(band, &sample);
+                record.output(band, exact);
+            }
+            if sink.as_deref_mut().is_some_and(|sink| sink.sample(&sample).is_break()) {
+                return Err(RunError::Stopped);
+            }
+            if options.trace {
+                samples.push(sample);
+            }
         }
-        plant.hold(applied, |step| stretches.step((step.t0, r - step.y0), (step.t1, r - step.y1)));
+        plant.hold(applied, |step| {
+            stretches.step((step.t0, r - step.y0), (step.t1, r - step.y1));
+            if let Some(record) = &mut record {
+                record.output(band, step.y1);
+            }
+        });
     }
+    control.add(count % CHECKED_EVERY);
     let (events, total) = stretches.finish();
     let remarks = watch.finish(scenario.noise.map_or(0.0, |n| n.std));
-    Ok(ControllerResult { name: spec.name.clone(), events, total, trace: samples, remarks })
+    Ok(ControllerResult { name: spec.name.clone(), events, total, trace: samples, record, remarks })
 }
 
 fn apply<T: Real>(
@@ -219,9 +283,12 @@ fn apply<T: Real>(
 ) -> Result<(), ConfigErrors> {
     let input = &mut requests.input;
     match change {
-        Change::Setpoint(r) => (requests.r, input.r) = (*r, T::from_f64(*r)),
-        Change::RemoteSetpoint(r) => (requests.r_remote, input.r_remote) = (*r, T::from_f64(*r)),
-        Change::Disturbance(_) => {}
+        Change::Setpoint(Signal::Step(r)) => (requests.r, input.r) = (*r, T::from_f64(*r)),
+        Change::RemoteSetpoint(Signal::Step(r)) => {
+            (requests.r_remote, input.r_remote) = (*r, T::from_f64(*r))
+        }
+        Change::Disturbance(_) | Change::Setpoint(_) | Change::RemoteSetpoint(_) | Change::Measurement(_) => {
+        }
         Change::Mode(mode) => input.mode = *mode,
         Change::Manual(u) => input.manual = Some(T::from_f64(*u)),
         Change::Track(u) => input.track = T::from_f64(*u),
@@ -240,10 +307,12 @@ fn apply<T: Real>(
 }
 
 /// The disturbances that reach one controller's plant, with their times, in order.
-fn disturbances(scenario: &Scenario, index: usize) -> Vec<(f64, Disturbance)> {
+fn disturbances(scenario: &Scenario, index: usize) -> Vec<(f64, Signal)> {
     let concerned = scenario.events.iter().filter(|e| e.controller.is_none_or(|only| only == index));
     let changes = concerned.flat_map(|e| e.changes.iter().map(move |c| (e.at, c)));
-    changes.filter_map(|(at, c)| if let Change::Disturbance(d) = c { Some((at, *d)) } else { None }).collect()
+    changes
+        .filter_map(|(at, c)| if let Change::Disturbance(d) = c { Some((at, d.clone())) } else { None })
+        .collect()
 }
 
 /// Delay memory that every parameter set of a controller fits in.
