@@ -12,77 +12,136 @@ pub struct Input {
     pub slope: f64,
 }
 
+/// A sine in the input at one instant, with its quadrature: `sin` is what it adds \[u\].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Wave {
+    /// `amplitude * sin(angle)` \[u\].
+    pub sin: f64,
+    /// `amplitude * cos(angle)` \[u\].
+    pub cos: f64,
+}
+
 /// The rational part of a plant with its state. The dead time is the caller's business: it hands in the delayed input.
 ///
-/// Exact for inputs that are linear over a step: `x <- Phi*x + G0*w + G1*w'`, from one matrix exponential per length of
-/// step.
+/// Exact for inputs that are linear over a step, and sines of known frequencies: `x <- Phi*x + G0*w + G1*w'` (and
+/// `+ Gs*sin + Gc*cos`), from one matrix exponential per length of step.
 #[derive(Debug, Clone)]
 pub struct LinearPlant {
     system: StateSpace,
+    /// Angular frequencies of the sines \[rad/s\].
+    frequencies: Vec<f64>,
     x: Vec<f64>,
     next: Vec<f64>,
-    lengths: Vec<(f64, Matrix)>,
+    /// `c*x`: the output without feed-through.
+    inside: f64,
+    steps: Vec<Step>,
 }
 
-/// Lengths of steps whose exponentials are kept.
+/// How the state moves over a step of one length.
+#[derive(Debug, Clone)]
+struct Step {
+    h: f64,
+    /// A row for each state: the states, the input, its slope, sine and quadrature of each frequency.
+    rows: Vec<f64>,
+}
+
+/// Lengths of steps whose matrices are kept, besides those that were prepared.
 const KEPT: usize = 64;
 
 impl LinearPlant {
     /// A plant with the state `x`.
     #[must_use]
     pub fn new(system: StateSpace, x: Vec<f64>) -> Self {
+        Self::with_waves(system, x, Vec::new())
+    }
+
+    /// A plant with the state `x`, whose input has sines of these angular frequencies \[rad/s\].
+    #[must_use]
+    pub fn with_waves(system: StateSpace, x: Vec<f64>, frequencies: Vec<f64>) -> Self {
         let next = x.clone();
-        Self { system, x, next, lengths: Vec::new() }
+        let inside = dot(&system.c, &x);
+        Self { system, frequencies, x, next, inside, steps: Vec::new() }
     }
 
     /// The output for the input `w` just before the present instant \[y\].
     #[must_use]
     pub fn output(&self, w: f64) -> f64 {
-        self.system.c.iter().zip(&self.x).map(|(c, x)| c * x).sum::<f64>() + self.system.d * w
+        self.inside + self.system.d * w
     }
 
-    /// Moves through `h` seconds.
-    pub fn advance(&mut self, h: f64, input: Input) {
-        let n = self.x.len();
-        if n == 0 {
-            return;
+    /// Prepares steps of `h` seconds; the number that [`advance_by`](Self::advance_by) knows them by.
+    pub fn prepare(&mut self, h: f64) -> usize {
+        if let Some(index) = self.steps.iter().position(|step| step.h == h) {
+            return index;
         }
-        let index = match self.lengths.iter().position(|(length, _)| *length == h) {
-            Some(index) => index,
+        let rows = self.rows(h);
+        self.steps.push(Step { h, rows });
+        self.steps.len() - 1
+    }
+
+    /// Moves through `h` seconds; `waves` has one entry for each frequency.
+    pub fn advance(&mut self, h: f64, input: Input, waves: &[Wave]) {
+        match self.steps.iter().position(|step| step.h == h) {
+            Some(index) => self.advance_by(index, input, waves),
             None => {
-                if self.lengths.len() == KEPT {
-                    self.lengths.pop();
+                let index = self.prepare(h);
+                self.advance_by(index, input, waves);
+                if index >= KEPT {
+                    self.steps.pop();
                 }
-                self.lengths.push((h, self.propagator(h)));
-                self.lengths.len() - 1
             }
-        };
-        let propagator = &self.lengths[index].1;
+        }
+    }
+
+    /// Moves through a prepared step; an unknown number moves nothing.
+    pub fn advance_by(&mut self, index: usize, input: Input, waves: &[Wave]) {
+        let n = self.x.len();
+        let (Some(step), false) = (self.steps.get(index), n == 0) else { return };
+        let width = n + 2 + 2 * self.frequencies.len();
         let slope = input.slope * self.system.scale;
-        for (i, next) in self.next.iter_mut().enumerate() {
-            let row = propagator.row(i);
-            let mut sum = row[n] * input.value + row[n + 1] * slope;
-            for (a, x) in row.iter().zip(&self.x) {
-                sum += a * x;
+        for (next, row) in self.next.iter_mut().zip(step.rows.chunks_exact(width)) {
+            let (of_states, of_inputs) = row.split_at(n);
+            let mut sum = of_inputs[0] * input.value;
+            if slope != 0.0 {
+                sum += of_inputs[1] * slope;
             }
-            *next = sum;
+            for (wave, of_wave) in waves.iter().zip(of_inputs[2..].chunks_exact(2)) {
+                sum += of_wave[0] * wave.sin + of_wave[1] * wave.cos;
+            }
+            *next = sum + dot(of_states, &self.x);
         }
         std::mem::swap(&mut self.x, &mut self.next);
+        self.inside = dot(&self.system.c, &self.x);
     }
 
-    /// `exp` of the system with the input and its slope as two more states.
-    fn propagator(&self, h: f64) -> Matrix {
+    /// `exp` of the system with the input, its slope and the sines as more states.
+    fn rows(&self, h: f64) -> Vec<f64> {
         let n = self.x.len();
-        let mut m = Matrix::zero(n + 2);
+        let scale = self.system.scale;
+        let size = n + 2 + 2 * self.frequencies.len();
+        let mut m = Matrix::zero(size);
         for i in 0..n {
             for j in 0..n {
                 *m.at_mut(i, j) = self.system.a.at(i, j);
             }
             *m.at_mut(i, n) = self.system.b[i];
+            for wave in 0..self.frequencies.len() {
+                *m.at_mut(i, n + 2 + 2 * wave) = self.system.b[i];
+            }
         }
         *m.at_mut(n, n + 1) = 1.0;
-        m.exp(h / self.system.scale)
+        for (wave, omega) in self.frequencies.iter().enumerate() {
+            let sine = n + 2 + 2 * wave;
+            *m.at_mut(sine, sine + 1) = omega * scale;
+            *m.at_mut(sine + 1, sine) = -omega * scale;
+        }
+        let exp = m.exp(h / scale);
+        (0..n).flat_map(|i| exp.row(i).to_vec()).collect()
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -99,7 +158,7 @@ mod tests {
             let mut plant = LinearPlant::new(system, vec![0.0; order]);
             let mut t = 0.0;
             for h in [0.5, 0.25, 1.5, 0.75] {
-                plant.advance(h, Input { value: value + slope * t, slope });
+                plant.advance(h, Input { value: value + slope * t, slope }, &[]);
                 t += h;
             }
             plant.output(value + slope * t)
@@ -130,6 +189,23 @@ mod tests {
         assert!((step - (3.0 - (1.0 - e(3.0)))).abs() < 1e-14, "{step}");
     }
 
+    /// Through a lag, `sin(w*t)` becomes `(sin(w*t) - w*tau*cos(w*t) + w*tau*exp(-t/tau))/(1 + (w*tau)^2)`.
+    #[test]
+    fn a_sine_is_followed_exactly() {
+        let (tau, omega) = (2.0, 3.0);
+        let system = StateSpace::new(&parse("1/(1+2*s)").expect("a plant"), 0.7);
+        let mut plant = LinearPlant::with_waves(system, vec![0.0], vec![omega]);
+        let mut t = 0.0;
+        for h in [0.5, 0.25, 1.5, 0.75] {
+            let wave = Wave { sin: libm::sin(omega * t), cos: libm::cos(omega * t) };
+            plant.advance(h, Input::default(), &[wave]);
+            t += h;
+        }
+        let (w, at) = (omega * tau, omega * t);
+        let exact = (libm::sin(at) - w * libm::cos(at) + w * libm::exp(-t / tau)) / (1.0 + w * w);
+        assert!((plant.output(0.0) - exact).abs() < 1e-14, "{} {exact}", plant.output(0.0));
+    }
+
     #[test]
     fn plants_rest_where_they_are_put() {
         for expression in
@@ -141,7 +217,7 @@ mod tests {
             let mut plant = LinearPlant::new(system, x);
             assert!((plant.output(w) - 7.0).abs() < 1e-12, "{expression}");
             for _ in 0..50 {
-                plant.advance(0.3, Input { value: w, slope: 0.0 });
+                plant.advance(0.3, Input { value: w, slope: 0.0 }, &[]);
             }
             assert!((plant.output(w) - 7.0).abs() < 1e-9, "{expression}: {}", plant.output(w));
         }

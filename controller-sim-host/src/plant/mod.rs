@@ -4,5 +4,5 @@ mod dense;
 mod linear;
 mod state_space;
 
-pub use linear::{Input, LinearPlant};
+pub use linear::{Input, LinearPlant, Wave};
 pub use state_space::StateSpace;

@@ -1,10 +1,9 @@
 //! The plant side of a sampled loop: held output, latency, dead time, disturbance, exactly between the samples.
 
-use super::disturbance::{Curve, SAME};
-use crate::plant::{Input, LinearPlant, StateSpace};
+use super::curve::{Curve, SAME};
+use crate::plant::{Input, LinearPlant, StateSpace, Wave};
 use crate::scenario::Signal;
 use controller_design::model::TransferFunction;
-use std::collections::VecDeque;
 
 /// The plant's output over a step between samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +23,8 @@ pub struct SubStep {
 struct Grid {
     start: f64,
     h: f64,
+    /// The plant's number for steps of this length.
+    index: usize,
     new_output: bool,
 }
 
@@ -36,8 +37,13 @@ pub struct ClosedLoop {
     plant: LinearPlant,
     ts: f64,
     grid: Vec<Grid>,
-    line: VecDeque<f64>,
+    /// Outputs that have not arrived yet, as a ring; one more than the delay for the part of a sample before the new
+    /// output arrives.
+    line: Vec<f64>,
+    /// Where the next output is written; the oldest is there.
+    write: usize,
     disturbance: Curve,
+    waves: Vec<Wave>,
     sample: u64,
     w_before: f64,
 }
@@ -60,19 +66,13 @@ impl ClosedLoop {
         let whole = if (delay - delay.round()).abs() < SAME { delay.round() } else { delay.floor() };
         let fraction = if whole == delay.floor() && delay - whole >= SAME { delay - whole } else { 0.0 };
         let u0 = w0 - d0;
-        // Newest first; one more than the delay for the part of a sample before the new output arrives.
-        let line = VecDeque::from(vec![u0; whole as usize + 2]);
         let disturbance = Curve::new(d0, disturbances, plant.dead_time(), ts);
-        let this = Self {
-            plant: LinearPlant::new(system, x),
-            ts,
-            grid: grid(ts, substeps.max(1), fraction),
-            line,
-            disturbance,
-            sample: 0,
-            w_before: w0,
-        };
-        Some((this, u0))
+        let frequencies = disturbance.frequencies();
+        let waves = vec![Wave::default(); frequencies.len()];
+        let mut plant = LinearPlant::with_waves(system, x, frequencies);
+        let grid = grid(ts, substeps.max(1), fraction, &mut plant);
+        let line = vec![u0; whole as usize + 2];
+        Some((Self { plant, ts, grid, line, write: 0, disturbance, waves, sample: 0, w_before: w0 }, u0))
     }
 
     /// The measurement of this sample, before its output acts \[y\].
@@ -89,58 +89,101 @@ impl ClosedLoop {
 
     /// Applies `u` \[u\] and moves to the next sample; `each` sees the output between the samples.
     pub fn hold(&mut self, u: f64, mut each: impl FnMut(SubStep)) {
-        self.line.pop_back();
-        self.line.push_front(u);
-        let oldest = self.line.len() - 1;
-        let (arrived, before) = (self.line[oldest - 1], self.line[oldest]);
+        let (arrived, before) = self.push(u);
         let k = self.sample as f64;
-        for index in 0..self.grid.len() {
-            let step = self.grid[index];
-            let output = if step.new_output { arrived } else { before };
-            let mut start = step.start;
-            let mut left = step.h;
-            // A piece of the disturbance that begins inside the step divides it.
-            while let Some(next) = self.disturbance.next() {
-                let at = next - k;
-                let until = (at - start) * self.ts;
-                if until > left - SAME * self.ts {
-                    break;
-                }
-                if until > SAME * self.ts {
-                    self.advance(k, start, until, output, &mut each);
-                    start = at;
-                    left -= until;
-                }
-                self.disturbance.enter_next();
+        // Nothing begins before the next sample and no sine runs: the usual sample, without a question at each step.
+        if self.disturbance.next() >= k + 1.0 - SAME && self.waves.is_empty() {
+            for index in 0..self.grid.len() {
+                let step = self.grid[index];
+                let output = if step.new_output { arrived } else { before };
+                self.advance(k + step.start, Some(step.index), step.h, output, &mut each);
             }
-            self.advance(k, start, left, output, &mut each);
+        } else {
+            for index in 0..self.grid.len() {
+                let step = self.grid[index];
+                let output = if step.new_output { arrived } else { before };
+                self.advance_over_breaks(k, step, output, &mut each);
+            }
         }
         self.sample += 1;
     }
 
-    fn advance(&mut self, k: f64, start: f64, h: f64, output: f64, each: &mut impl FnMut(SubStep)) {
-        let (d, slope) = self.disturbance.now(k + start);
-        let w = output + d;
-        let y0 = self.plant.output(w);
-        self.plant.advance(h, Input { value: w, slope });
-        self.w_before = w + slope * h;
-        let t0 = (k + start) * self.ts;
+    /// Puts `u` into the line: the output that arrives within this sample, and the one before it.
+    fn push(&mut self, u: f64) -> (f64, f64) {
+        let size = self.line.len();
+        self.line[self.write] = u;
+        // The oldest but one arrives; it was written `size - 2` samples ago.
+        let wrap = |i: usize| if i >= size { i - size } else { i };
+        let oldest = wrap(self.write + 1);
+        let (before, arrived) = (self.line[oldest], self.line[wrap(oldest + 1)]);
+        self.write = oldest;
+        (arrived, before)
+    }
+
+    /// A step of the grid, divided where the disturbance breaks.
+    fn advance_over_breaks(&mut self, k: f64, step: Grid, output: f64, each: &mut impl FnMut(SubStep)) {
+        let mut start = step.start;
+        let mut left = step.h;
+        let mut index = Some(step.index);
+        loop {
+            let at = self.disturbance.next() - k;
+            let until = (at - start) * self.ts;
+            // The last break may be infinitely far away.
+            if until > left - SAME * self.ts {
+                break;
+            }
+            if until > SAME * self.ts {
+                self.advance(k + start, None, until, output, each);
+                start = at;
+                left -= until;
+                index = None;
+            }
+            self.disturbance.enter_next();
+        }
+        self.advance(k + start, index, left, output, each);
+    }
+
+    /// Moves from the instant `s` (in samples) through `h` seconds.
+    fn advance(&mut self, s: f64, index: Option<usize>, h: f64, output: f64, each: &mut impl FnMut(SubStep)) {
+        let (d, slope) = self.disturbance.line(s);
+        let value = output + d;
+        let t0 = s * self.ts;
+        if self.waves.is_empty() {
+            let y0 = self.plant.output(value);
+            match index {
+                Some(index) => self.plant.advance_by(index, Input { value, slope }, &[]),
+                None => self.plant.advance(h, Input { value, slope }, &[]),
+            }
+            self.w_before = value + slope * h;
+            each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
+            return;
+        }
+        let sum = |waves: &[Wave]| waves.iter().map(|wave| wave.sin).sum::<f64>();
+        self.disturbance.waves(s, &mut self.waves);
+        let y0 = self.plant.output(value + sum(&self.waves));
+        self.plant.advance(h, Input { value, slope }, &self.waves);
+        self.disturbance.waves(s + h / self.ts, &mut self.waves);
+        self.w_before = value + slope * h + sum(&self.waves);
         each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
     }
 }
 
 /// The steps inside one sample: `substeps` equal ones, that in which the new output arrives divided there.
-fn grid(ts: f64, substeps: usize, fraction: f64) -> Vec<Grid> {
-    let h = ts / substeps as f64;
+fn grid(ts: f64, substeps: usize, fraction: f64, plant: &mut LinearPlant) -> Vec<Grid> {
+    let whole = ts / substeps as f64;
     let mut steps = Vec::new();
+    let mut add = |start: f64, h: f64, new_output: bool| {
+        let index = plant.prepare(h);
+        steps.push(Grid { start, h, index, new_output });
+    };
     for j in 0..substeps {
         let (start, end) = (j as f64 / substeps as f64, (j + 1) as f64 / substeps as f64);
         if fraction > start + SAME && fraction < end - SAME {
             let first = (fraction - start) * ts;
-            steps.push(Grid { start, h: first, new_output: false });
-            steps.push(Grid { start: fraction, h: h - first, new_output: true });
+            add(start, first, false);
+            add(fraction, whole - first, true);
         } else {
-            steps.push(Grid { start, h, new_output: start >= fraction - SAME });
+            add(start, whole, start >= fraction - SAME);
         }
     }
     steps

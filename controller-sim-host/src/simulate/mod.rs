@@ -1,14 +1,18 @@
 //! The sampled loop: the controller's own code against an exactly simulated plant.
 
+mod actuator;
 mod closed_loop;
 mod control;
-mod disturbance;
+mod curve;
 mod law;
 mod metrics;
 mod noise;
 mod record;
 mod remarks;
 mod run;
+mod secondary;
+mod sensor;
+mod single;
 mod stretches;
 
 pub use closed_loop::{ClosedLoop, SubStep};
@@ -18,5 +22,7 @@ pub use metrics::Metrics;
 pub use noise::Gaussian;
 pub use record::{Band, COLUMNS, Envelope, Record, View};
 pub use remarks::Remark;
-pub use run::{ControllerResult, Precision, RunError, RunOptions, RunResult, Sample, run, run_with};
+pub use run::{
+    ControllerResult, InnerSample, Precision, RunError, RunOptions, RunResult, Sample, run, run_with,
+};
 pub use stretches::{EventKind, Stretch, sample_of};

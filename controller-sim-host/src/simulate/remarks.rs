@@ -18,13 +18,40 @@ pub(super) struct Watch {
     limited: u64,
     /// Largest error in each tenth of the run.
     tenths: [f64; 10],
+    tenth: usize,
+    /// The sample with which the next tenth begins, and the length of the run in samples.
+    next_tenth: u64,
+    count: u64,
     automatic: bool,
 }
 
+/// The bits that are counted.
+const TROUBLE: u32 = Status::FALLBACK.bits()
+    | Status::REJECTED.bits()
+    | Status::LIMITED_HIGH.bits()
+    | Status::LIMITED_LOW.bits();
+
 impl Watch {
-    /// A sample at the time `t`, `done` of the run (0 to 1).
-    pub(super) fn sample(&mut self, t: f64, done: f64, e: f64, status: Status, automatic: bool) {
+    /// Of a run of `count` samples.
+    pub(super) fn new(count: u64) -> Self {
+        Self { count, next_tenth: count.div_ceil(10), ..Self::default() }
+    }
+
+    /// The sample `k` at the time `t`.
+    pub(super) fn sample(&mut self, t: f64, k: u64, e: f64, status: Status, automatic: bool) {
         self.samples += 1;
+        if k >= self.next_tenth {
+            self.tenth = (self.tenth + 1).min(9);
+            self.next_tenth = (self.count * (self.tenth as u64 + 1)).div_ceil(10);
+        }
+        self.automatic = automatic;
+        let e = e.abs();
+        if e > self.tenths[self.tenth] {
+            self.tenths[self.tenth] = e;
+        }
+        if status.bits() & TROUBLE == 0 {
+            return;
+        }
         let count = |(n, first): &mut (u64, f64), yes: bool| {
             if yes {
                 *first = if *n == 0 { t } else { *first };
@@ -34,9 +61,6 @@ impl Watch {
         count(&mut self.fallback, status.has(Status::FALLBACK));
         count(&mut self.rejected, status.has(Status::REJECTED));
         self.limited += u64::from(status.has(Status::LIMITED_HIGH) || status.has(Status::LIMITED_LOW));
-        self.automatic = automatic;
-        let tenth = ((done * 10.0) as usize).min(9);
-        self.tenths[tenth] = self.tenths[tenth].max(e.abs());
     }
 
     /// The remarks; `noise` is the standard deviation of the measurement noise \[y\].

@@ -41,6 +41,8 @@ pub(super) struct Stretches {
     /// When each takes effect \[s\]: a disturbance at its time, everything else with the next sample.
     list: Vec<(f64, Stretch)>,
     current: usize,
+    /// When the next one takes effect \[s\]; infinite in the last.
+    next: f64,
 }
 
 impl Stretches {
@@ -70,14 +72,20 @@ impl Stretches {
         if list.first().is_none_or(|(start, _)| *start > 0.0) {
             list.insert(0, (0.0, begin(0.0, EventKind::Start)));
         }
-        Self { list, current: 0 }
+        let next = list.get(1).map_or(f64::INFINITY, |(start, _)| *start);
+        Self { list, current: 0, next }
     }
 
     /// Goes to the stretch that holds at the time `t`.
     fn enter(&mut self, t: f64) {
-        while self.list.get(self.current + 1).is_some_and(|(start, _)| *start <= t) {
-            self.current += 1;
+        while self.next <= t {
+            self.go_on();
         }
+    }
+
+    fn go_on(&mut self) {
+        self.current += 1;
+        self.next = self.list.get(self.current + 1).map_or(f64::INFINITY, |(start, _)| *start);
     }
 
     /// A sample at the time `t`: error, output before and after.
@@ -89,13 +97,14 @@ impl Stretches {
 
     /// The error between two samples, divided where a stretch begins inside.
     pub(super) fn step(&mut self, (mut t0, mut e0): (f64, f64), (t1, e1): (f64, f64)) {
-        while let Some(start) = self.list.get(self.current + 1).map(|(start, _)| *start).filter(|s| *s < t1) {
+        while self.next < t1 {
+            let start = self.next;
             if start > t0 {
                 let e = e0 + (e1 - e0) * ((start - t0) / (t1 - t0));
                 self.add((t0, e0), (start, e));
                 (t0, e0) = (start, e);
             }
-            self.current += 1;
+            self.go_on();
         }
         self.add((t0, e0), (t1, e1));
     }
