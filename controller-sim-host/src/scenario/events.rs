@@ -6,6 +6,7 @@ use super::number::{Allowed, show};
 use super::sections::{mode, signal};
 use super::suggest::closest;
 use super::table::{Located, Table, shortened};
+use super::texts;
 use super::trial::{self, Context};
 use super::{Change, Event, Signal};
 use crate::simulate::sample_of;
@@ -41,8 +42,9 @@ pub(super) fn read(
         if let Some(who) = concerned(&table, controller, drafts.len()) {
             changes.extend(read_parameters(&table, drafts, &who, context));
         }
+        let label = texts::label(&table);
         let keys = table.written();
-        if keys.iter().all(|(key, ..)| matches!(*key, "at" | "controller")) {
+        if keys.iter().all(|(key, ..)| matches!(*key, "at" | "controller" | "label")) {
             let message = "this event changes nothing";
             let help = "write what happens, for example `setpoint = 1.0` or `disturbance = 1.0`";
             table.log.fault(Fault::new(code::MISSING_KEY, table.place.clone(), message).help(help));
@@ -53,7 +55,7 @@ pub(super) fn read(
         if let Some(at) = at {
             let (spans, changes) = changes.into_iter().unzip();
             events.push(Placed {
-                event: Event { at, label: String::new(), changes, controller: controller.flatten() },
+                event: Event { at, label, changes, controller: controller.flatten() },
                 spans,
             });
         }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The codes of faults and warnings. They are stable: a program may act on them.
 pub mod code {
@@ -27,6 +28,10 @@ pub mod code {
     pub const UNKNOWN_NAME: &str = "unknown-name";
     /// Something this version of the program cannot do.
     pub const NOT_SUPPORTED: &str = "not-supported";
+    /// A file that a scenario names and that cannot be read.
+    pub const FILE: &str = "file";
+    /// A recording with a mistake in it.
+    pub const RECORDING: &str = "recording";
     /// More samples or a longer dead time than the program handles.
     pub const TOO_LARGE: &str = "too-large";
     /// Warning: a filter so fast that it filters little.
@@ -55,6 +60,17 @@ pub struct Fault {
     pub help: Option<String>,
     /// A second place that belongs to it, for example the first of two equal names.
     pub related: Option<Related>,
+    /// The text that `span` and `related` are places of, when it is not the scenario itself but a file it includes.
+    pub source: Option<Arc<SourceText>>,
+}
+
+/// A text with its name, for messages.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SourceText {
+    /// As the scenario names it.
+    pub name: String,
+    /// All of it.
+    pub text: String,
 }
 
 /// The second place of a [`Fault`].
@@ -70,7 +86,7 @@ impl Fault {
     /// A fault without help.
     #[must_use]
     pub fn new(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { code, span, message: message.into(), help: None, related: None }
+        Self { code, span, message: message.into(), help: None, related: None, source: None }
     }
 
     /// The same fault with help.
@@ -87,10 +103,10 @@ impl Fault {
         self
     }
 
-    /// Where it is in `text`, the text that was read.
+    /// Where it is: in `text`, the text that was read, unless the fault has a [source](Self::source) of its own.
     #[must_use]
     pub fn place(&self, text: &str) -> Place {
-        Place::of(text, &self.span)
+        Place::of(self.source.as_ref().map_or(text, |source| &source.text), &self.span)
     }
 }
 

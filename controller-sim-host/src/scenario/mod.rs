@@ -1,14 +1,18 @@
 //! What a scenario says: a plant, events, one or more controllers; and how it is [read] from TOML.
 #![doc = include_str!("format.md")]
 
+mod cases;
 mod compensators;
 mod controllers;
 mod events;
 mod explain;
 mod expression;
 mod fault;
+mod files;
+mod key_path;
 mod log;
 mod number;
+mod override_key;
 mod pid;
 mod places;
 mod ranges;
@@ -18,9 +22,13 @@ mod signal;
 mod suggest;
 mod syntax;
 mod table;
+mod texts;
 mod trial;
 
-pub use fault::{Fault, Place, Related, code};
+pub use cases::{Case, ReadAll, read_with};
+pub use fault::{Fault, Place, Related, SourceText, code};
+pub use files::{Files, FolderFiles, NoFiles};
+pub use override_key::override_key;
 pub use read::{Read, VERSION, read};
 pub use signal::{Between, Recording, Signal};
 

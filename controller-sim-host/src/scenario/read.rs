@@ -10,8 +10,9 @@ use super::ranges;
 use super::sections::signal;
 use super::syntax;
 use super::table::{Located, Table};
+use super::texts;
 use super::trial::{self, Context, LONGEST_DELAY, delay_fault};
-use super::{Actuator, Initial, Noise, Scenario, Sensor, Units};
+use super::{Actuator, Initial, Noise, Scenario, Sensor};
 use crate::simulate::Precision;
 use controller_design::model::TransferFunction;
 use toml::de::DeTable;
@@ -101,6 +102,7 @@ fn nothing_in(text: &str, document: &DeTable<'_>, syntax: &[Fault]) -> Option<Fa
 fn read_root(root: Table<'_>, precision: Precision) -> Option<Scenario> {
     let log = root.log;
     read_version(&root);
+    let (title, description, units) = (texts::title(&root), texts::description(&root), texts::units(&root));
     let ts =
         required(&root, "ts", Allowed::new(1e-9, 1e9, "s"), "the sampling period in seconds: `ts = 0.01`");
     let duration =
@@ -130,9 +132,9 @@ fn read_root(root: Table<'_>, precision: Precision) -> Option<Scenario> {
         return None;
     }
     let scenario = Scenario {
-        title: String::new(),
-        description: String::new(),
-        units: Units::default(),
+        title,
+        description,
+        units,
         ts: ts?,
         duration: duration?,
         latency,

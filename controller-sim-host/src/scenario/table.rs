@@ -10,7 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The keys that stand above the first table.
-const ABOVE_TABLES: [&str; 5] = ["version", "ts", "duration", "latency", "substeps"];
+const ABOVE_TABLES: [&str; 7] = ["version", "ts", "duration", "latency", "substeps", "title", "description"];
 
 /// A value and where it stands.
 #[derive(Debug, Clone, PartialEq)]
