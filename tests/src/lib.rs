@@ -2,6 +2,7 @@
 //! as the product's own types ([`cases`]), and a loop of the runtime against an oracle's plant ([`rig`]).
 
 pub mod cases;
+pub mod golden_loops;
 pub mod oracle;
 pub mod response;
 pub mod rig;
