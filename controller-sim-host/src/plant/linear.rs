@@ -41,8 +41,8 @@ pub struct LinearPlant {
 #[derive(Debug, Clone)]
 struct Step {
     h: f64,
-    /// A row for each state: the states, the input, its slope, sine and quadrature of each frequency.
-    rows: Vec<f64>,
+    /// A column for each state, the input, its slope, sine and quadrature of each frequency; as long as there are states.
+    columns: Vec<f64>,
 }
 
 /// Lengths of steps whose matrices are kept, besides those that were prepared.
@@ -65,6 +65,7 @@ impl LinearPlant {
 
     /// The output for the input `w` just before the present instant \[y\].
     #[must_use]
+    #[inline]
     pub fn output(&self, w: f64) -> f64 {
         self.inside + self.system.d * w
     }
@@ -74,8 +75,8 @@ impl LinearPlant {
         if let Some(index) = self.steps.iter().position(|step| step.h == h) {
             return index;
         }
-        let rows = self.rows(h);
-        self.steps.push(Step { h, rows });
+        let columns = self.columns(h);
+        self.steps.push(Step { h, columns });
         self.steps.len() - 1
     }
 
@@ -97,25 +98,40 @@ impl LinearPlant {
     pub fn advance_by(&mut self, index: usize, input: Input, waves: &[Wave]) {
         let n = self.x.len();
         let (Some(step), false) = (self.steps.get(index), n == 0) else { return };
-        let width = n + 2 + 2 * self.frequencies.len();
-        let slope = input.slope * self.system.scale;
-        for (next, row) in self.next.iter_mut().zip(step.rows.chunks_exact(width)) {
-            let (of_states, of_inputs) = row.split_at(n);
-            let mut sum = of_inputs[0] * input.value;
-            if slope != 0.0 {
-                sum += of_inputs[1] * slope;
+        let inputs = [input.value, input.slope * self.system.scale];
+        let (columns, c) = (&*step.columns, &*self.system.c);
+        if waves.is_empty() {
+            // Most plants are small: loops of known length cost a third. The order of the sums is the same for all.
+            let small = match n {
+                1 => small::<1>(columns, c, &mut self.x, inputs),
+                2 => small::<2>(columns, c, &mut self.x, inputs),
+                3 => small::<3>(columns, c, &mut self.x, inputs),
+                4 => small::<4>(columns, c, &mut self.x, inputs),
+                5 => small::<5>(columns, c, &mut self.x, inputs),
+                6 => small::<6>(columns, c, &mut self.x, inputs),
+                _ => None,
+            };
+            if let Some(inside) = small {
+                self.inside = inside;
+                return;
             }
-            for (wave, of_wave) in waves.iter().zip(of_inputs[2..].chunks_exact(2)) {
-                sum += of_wave[0] * wave.sin + of_wave[1] * wave.cos;
-            }
-            *next = sum + dot(of_states, &self.x);
+        }
+        self.next.fill(0.0);
+        let of_waves = waves.iter().flat_map(|wave| [wave.sin, wave.cos]);
+        let (of_states, of_inputs) = columns.split_at(n * n);
+        let factors = inputs.into_iter().chain(of_waves);
+        for (column, factor) in of_inputs.chunks_exact(n).zip(factors) {
+            self.next.iter_mut().zip(column).for_each(|(next, a)| *next += a * factor);
+        }
+        for (column, factor) in of_states.chunks_exact(n).zip(&self.x) {
+            self.next.iter_mut().zip(column).for_each(|(next, a)| *next += a * factor);
         }
         std::mem::swap(&mut self.x, &mut self.next);
-        self.inside = dot(&self.system.c, &self.x);
+        self.inside = dot(c, &self.x);
     }
 
     /// `exp` of the system with the input, its slope and the sines as more states.
-    fn rows(&self, h: f64) -> Vec<f64> {
+    fn columns(&self, h: f64) -> Vec<f64> {
         let n = self.x.len();
         let scale = self.system.scale;
         let size = n + 2 + 2 * self.frequencies.len();
@@ -136,10 +152,33 @@ impl LinearPlant {
             *m.at_mut(sine + 1, sine) = -omega * scale;
         }
         let exp = m.exp(h / scale);
-        (0..n).flat_map(|i| exp.row(i).to_vec()).collect()
+        (0..size).flat_map(|j| (0..n).map(move |i| (i, j))).map(|(i, j)| exp.at(i, j)).collect()
     }
 }
 
+/// A step of a plant of `N` states without sines; gives `c*x`. `None` when the lengths do not fit.
+#[inline]
+fn small<const N: usize>(columns: &[f64], c: &[f64], x: &mut [f64], inputs: [f64; 2]) -> Option<f64> {
+    let x: &mut [f64; N] = x.try_into().ok()?;
+    let c: &[f64; N] = c.try_into().ok()?;
+    let (columns, _) = columns.as_chunks::<N>();
+    let (of_states, of_inputs) = columns.split_at_checked(N)?;
+    let mut next = [0.0; N];
+    for (column, factor) in of_inputs.iter().zip(inputs) {
+        for i in 0..N {
+            next[i] += column[i] * factor;
+        }
+    }
+    for (column, factor) in of_states.iter().zip(*x) {
+        for i in 0..N {
+            next[i] += column[i] * factor;
+        }
+    }
+    *x = next;
+    Some(dot(c, &next))
+}
+
+#[inline]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

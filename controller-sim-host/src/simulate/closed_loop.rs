@@ -96,7 +96,14 @@ impl ClosedLoop {
             for index in 0..self.grid.len() {
                 let step = self.grid[index];
                 let output = if step.new_output { arrived } else { before };
-                self.advance(k + step.start, Some(step.index), step.h, output, &mut each);
+                let (d, slope) = self.disturbance.line(k + step.start);
+                self.advance_straight(
+                    k + step.start,
+                    Some(step.index),
+                    step.h,
+                    (output + d, slope),
+                    &mut each,
+                );
             }
         } else {
             for index in 0..self.grid.len() {
@@ -143,21 +150,34 @@ impl ClosedLoop {
         self.advance(k + start, index, left, output, each);
     }
 
+    /// Moves from the instant `s` (in samples) through `h` seconds without sines.
+    #[inline]
+    fn advance_straight(
+        &mut self,
+        s: f64,
+        index: Option<usize>,
+        h: f64,
+        (value, slope): (f64, f64),
+        each: &mut impl FnMut(SubStep),
+    ) {
+        let y0 = self.plant.output(value);
+        match index {
+            Some(index) => self.plant.advance_by(index, Input { value, slope }, &[]),
+            None => self.plant.advance(h, Input { value, slope }, &[]),
+        }
+        self.w_before = value + slope * h;
+        let t0 = s * self.ts;
+        each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
+    }
+
     /// Moves from the instant `s` (in samples) through `h` seconds.
     fn advance(&mut self, s: f64, index: Option<usize>, h: f64, output: f64, each: &mut impl FnMut(SubStep)) {
         let (d, slope) = self.disturbance.line(s);
         let value = output + d;
-        let t0 = s * self.ts;
         if self.waves.is_empty() {
-            let y0 = self.plant.output(value);
-            match index {
-                Some(index) => self.plant.advance_by(index, Input { value, slope }, &[]),
-                None => self.plant.advance(h, Input { value, slope }, &[]),
-            }
-            self.w_before = value + slope * h;
-            each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
-            return;
+            return self.advance_straight(s, index, h, (value, slope), each);
         }
+        let t0 = s * self.ts;
         let sum = |waves: &[Wave]| waves.iter().map(|wave| wave.sin).sum::<f64>();
         self.disturbance.waves(s, &mut self.waves);
         let y0 = self.plant.output(value + sum(&self.waves));

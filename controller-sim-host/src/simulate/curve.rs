@@ -24,6 +24,7 @@ struct Line {
 }
 
 impl Line {
+    #[inline]
     fn value(&self, s: f64, ts: f64) -> f64 {
         if self.slope == 0.0 { self.value } else { self.value + self.slope * (s - self.at) * ts }
     }
@@ -176,6 +177,7 @@ impl Curve {
     }
 
     /// Where the next piece begins, in samples; infinite after the last.
+    #[inline]
     pub(super) fn next(&self) -> f64 {
         self.next
     }
@@ -214,6 +216,7 @@ impl Curve {
     }
 
     /// Value \[u\] and slope \[u/s\] of the present straight piece at the instant `s`, in samples, without the sines.
+    #[inline]
     pub(super) fn line(&self, s: f64) -> (f64, f64) {
         (self.now.value(s, self.ts), self.now.slope)
     }
@@ -237,7 +240,15 @@ impl Curve {
     }
 
     /// Value at the instant `s`, in samples, sines included, going forward to the piece that holds then.
+    #[inline]
     pub(super) fn advance_to(&mut self, s: f64) -> f64 {
+        if self.next > s + SAME && self.now.slope == 0.0 && self.sines.is_empty() {
+            return self.now.value;
+        }
+        self.go_to(s)
+    }
+
+    fn go_to(&mut self, s: f64) -> f64 {
         while self.next <= s + SAME {
             self.enter_next();
         }

@@ -20,6 +20,7 @@ pub struct Metrics {
 impl Metrics {
     /// Adds the step from `(t0, e0)` to `(t1, e1)`, times since the start of the stretch. The error is taken as
     /// linear in between; with a change of sign its zero is found, so that `|e|` is integrated exactly.
+    #[inline]
     pub fn add_step(&mut self, (t0, e0): (f64, f64), (t1, e1): (f64, f64)) {
         let h = t1 - t0;
         if h <= 0.0 {
@@ -32,7 +33,7 @@ impl Metrics {
         } else {
             self.add_one_sign((t0, e0), (t1, e1));
         }
-        self.ise += h * (e0 * e0 + e0 * e1 + e1 * e1) / 3.0;
+        self.ise += h * (1.0 / 3.0) * (e0 * e0 + e0 * e1 + e1 * e1);
         for e in [e0, e1] {
             if e.abs() > self.e_max {
                 self.e_max = e.abs();
@@ -40,12 +41,13 @@ impl Metrics {
         }
     }
 
+    #[inline]
     fn add_one_sign(&mut self, (t0, e0): (f64, f64), (t1, e1): (f64, f64)) {
         let h = t1 - t0;
         let (a, b) = (e0.abs(), e1.abs());
         self.iae += 0.5 * h * (a + b);
         // Integral of t*|e| for |e| linear: Simpson's rule is exact.
-        self.itae += h / 6.0 * (t0 * a + (t0 + t1) * (a + b) + t1 * b);
+        self.itae += h * (1.0 / 6.0) * (t0 * a + (t0 + t1) * (a + b) + t1 * b);
     }
 
     /// Adds a sample: error `e`, output `u` after `u_before`.

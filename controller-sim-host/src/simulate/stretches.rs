@@ -96,6 +96,7 @@ impl Stretches {
     }
 
     /// The error between two samples, divided where a stretch begins inside.
+    #[inline]
     pub(super) fn step(&mut self, (mut t0, mut e0): (f64, f64), (t1, e1): (f64, f64)) {
         while self.next < t1 {
             let start = self.next;
@@ -109,6 +110,7 @@ impl Stretches {
         self.add((t0, e0), (t1, e1));
     }
 
+    #[inline]
     fn add(&mut self, (t0, e0): (f64, f64), (t1, e1): (f64, f64)) {
         let stretch = &mut self.list[self.current].1;
         stretch.metrics.add_step((t0 - stretch.at, e0), (t1 - stretch.at, e1));
