@@ -4,6 +4,7 @@
 //! * [`simulate`]: the run itself and its indices.
 //! * [`plant`]: plants that move exactly between the samples.
 //! * [`output`]: tables, JSON, CSV, messages with carets.
+//! * [`report`]: pages and pictures.
 //! * [`cli`]: the program `controller-sim`.
 //!
 //! ```
@@ -23,5 +24,6 @@ pub mod cli;
 pub mod demo;
 pub mod output;
 pub mod plant;
+pub mod report;
 pub mod scenario;
 pub mod simulate;

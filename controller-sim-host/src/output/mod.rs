@@ -5,7 +5,7 @@ mod csv;
 mod faults;
 mod file;
 mod json;
-mod table;
+pub(crate) mod table;
 
 pub use csv::write_csv;
 pub use faults::{Problem, Severity, render};

@@ -4,16 +4,16 @@ use super::precision_name;
 use crate::scenario::Scenario;
 use crate::simulate::{EventKind, Metrics, Precision, RunResult};
 
-const COLUMNS: [&str; 6] = ["IAE", "ISE", "ITAE", "IE", "e_max", "TV"];
+pub(crate) const COLUMNS: [&str; 6] = ["IAE", "ISE", "ITAE", "IE", "e_max", "TV"];
 /// Width of a number with its mark.
 const CELL: usize = 12;
 /// Widest column of names: the table is at most 100 columns wide.
 const WIDEST_NAME: usize = 100 - 2 - COLUMNS.len() * CELL;
 
 /// A block of the table.
-struct Block<'a> {
-    title: String,
-    lines: Vec<(&'a str, &'a Metrics)>,
+pub(crate) struct Block<'a> {
+    pub(crate) title: String,
+    pub(crate) lines: Vec<(&'a str, &'a Metrics)>,
     /// IE adds up errors of both signs: over several events a small one is no merit.
     compares_ie: bool,
 }
@@ -58,7 +58,7 @@ pub fn run_table(scenario: &Scenario, precision: Precision, result: &RunResult) 
 }
 
 /// Every remark on the run with the name of its controller.
-pub(super) fn remarks(result: &RunResult) -> impl Iterator<Item = (&str, &str)> {
+pub(crate) fn remarks(result: &RunResult) -> impl Iterator<Item = (&str, &str)> {
     result.controllers.iter().flat_map(|c| c.remarks.iter().map(|remark| (&*c.name, &*remark.text)))
 }
 
@@ -78,7 +78,7 @@ fn push_line(text: &mut String, name: &str, width: usize, cells: [String; 6]) {
 }
 
 /// The stretches in the order of time, those of all controllers together, then the whole run.
-fn blocks(result: &RunResult) -> Vec<Block<'_>> {
+pub(crate) fn blocks(result: &RunResult) -> Vec<Block<'_>> {
     let mut starts: Vec<(f64, EventKind)> = Vec::new();
     for stretch in result.controllers.iter().flat_map(|c| &c.events) {
         if !starts.contains(&(stretch.at, stretch.kind)) {
@@ -112,13 +112,13 @@ fn title(at: f64, kind: EventKind) -> String {
     format!("{what} at {at} s")
 }
 
-fn values(m: &Metrics) -> [f64; 6] {
+pub(crate) fn values(m: &Metrics) -> [f64; 6] {
     [m.iae, m.ise, m.itae, m.ie, m.e_max, m.tv]
 }
 
 /// The best number of each column as it is printed, so that equal-looking numbers are marked alike; none for
 /// a column with nothing to compare.
-fn best(block: &Block<'_>) -> [Option<String>; 6] {
+pub(crate) fn best(block: &Block<'_>) -> [Option<String>; 6] {
     let mut columns = [const { None }; 6];
     for (column, best) in columns.iter_mut().enumerate() {
         if COLUMNS[column] == "IE" && !block.compares_ie {
@@ -135,7 +135,7 @@ fn best(block: &Block<'_>) -> [Option<String>; 6] {
 }
 
 /// Four significant digits.
-fn format_number(x: f64) -> String {
+pub(crate) fn format_number(x: f64) -> String {
     if !x.is_finite() {
         return "-".to_owned();
     }

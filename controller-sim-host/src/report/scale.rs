@@ -1,0 +1,204 @@
+//! An axis: its range, its ticks at 1, 2 or 5 times a power of ten, and what stands beside them.
+
+use std::ops::RangeInclusive;
+
+/// Values beyond this are drawn at it: the sums and differences of what is drawn stay finite.
+const MOST: f64 = 1e300;
+/// Values below this are drawn as 0.
+const LEAST: f64 = 1e-290;
+/// A range this much smaller than its values is labelled as a difference from a round number.
+const CLOSE: f64 = 1e-4;
+
+/// A labelled place on an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tick {
+    /// Its place, from 0 to 1.
+    pub(super) share: f64,
+    /// Its number; empty: a mark only.
+    pub(super) label: String,
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Axis {
+    lo: f64,
+    hi: f64,
+    /// Its ticks, from below.
+    pub(super) ticks: Vec<Tick>,
+    /// Round number that the labels are counted from.
+    origin: f64,
+    /// Power of ten that the labels are multiplied by.
+    power: i32,
+}
+
+impl Axis {
+    /// The axis of signals that reach from `lo` to `hi`, with some room at both ends and about `most` ticks.
+    pub(super) fn of_values(range: Option<(f64, f64)>, most: usize) -> Self {
+        let (lo, hi) = range.unwrap_or((0.0, 1.0));
+        let (lo, hi) = (kept(lo), kept(hi));
+        let size = lo.abs().max(hi.abs());
+        // A signal that does not move, or by rounding only, is shown in the middle, not as noise of full height.
+        let least = if size > 0.0 { size * 1e-9 } else { 1.0 };
+        let room = if hi - lo <= least { least.max(size * 0.1) } else { (hi - lo) * 0.06 };
+        Self::new(lo - room, hi + room, most)
+    }
+
+    /// The axis of time, exactly from `from` to `to` \[s\].
+    pub(super) fn of_time(from: f64, to: f64, most: usize) -> Self {
+        Self::new(from, if to > from { to } else { from + 1.0 }, most)
+    }
+
+    fn new(lo: f64, hi: f64, most: usize) -> Self {
+        let (size, span) = (lo.abs().max(hi.abs()), hi - lo);
+        let origin = if span < CLOSE * size { rounded(lo + span / 2.0, exponent(span) + 1) } else { 0.0 };
+        let (start, end) = (lo - origin, hi - origin);
+        let (mantissa, e) = step(end - start, most);
+        let step = mantissa as f64 * power_of_ten(e);
+        // Rounding of the ends must not lose a tick that stands at one.
+        let first = ((start / step) - 1e-9).ceil() as i64;
+        let last = ((end / step) + 1e-9).floor() as i64;
+        let power = shared_power(start.abs().max(end.abs()));
+        let tick = |i: i64| Tick {
+            share: ((i as f64 * step - start) / (end - start)).clamp(0.0, 1.0),
+            label: decimal(i * mantissa, e - power),
+        };
+        Self { lo, hi, ticks: (first..=last).map(tick).collect(), origin, power }
+    }
+
+    /// The place of a value, 0 at the beginning of the axis and 1 at its end.
+    pub(super) fn share(&self, value: f64) -> f64 {
+        (kept(value) - self.lo) / (self.hi - self.lo)
+    }
+
+    /// What the axis covers.
+    pub(super) fn range(&self) -> RangeInclusive<f64> {
+        self.lo..=self.hi
+    }
+
+    /// Its unit in brackets with the power of ten of its labels, and the round number they are counted from.
+    pub(super) fn unit(&self, unit: &str) -> String {
+        let times = if self.power == 0 { String::new() } else { format!("10{}", superscript(self.power)) };
+        let mut text = match (&*times, unit) {
+            ("", "") => String::new(),
+            ("", unit) => format!(" [{unit}]"),
+            (times, "") => format!(" [\u{d7}{times}]"),
+            (times, unit) => format!(" [{times} {unit}]"),
+        };
+        if self.origin != 0.0 {
+            let sign = if self.origin > 0.0 { "\u{2212}" } else { "+" };
+            let size = crate::scenario::show(self.origin.abs());
+            text = format!(" {sign} {size}{text}");
+        }
+        text
+    }
+}
+
+/// A value within what can be drawn.
+fn kept(x: f64) -> f64 {
+    if x.abs() < LEAST { 0.0 } else { x.clamp(-MOST, MOST) }
+}
+
+/// Mantissa (1, 2 or 5) and exponent of the step that divides `span` into at most `most` parts.
+pub(super) fn step(span: f64, most: usize) -> (i64, i32) {
+    let least = span / most.max(1) as f64;
+    let e = exponent(least);
+    let fits = |m: &&(i64, i32)| m.0 as f64 * power_of_ten(m.1) >= least * (1.0 - 1e-9);
+    let choices = [(1, e), (2, e), (5, e), (1, e + 1)];
+    *choices.iter().find(fits).unwrap_or(&choices[3])
+}
+
+/// The exponent of the largest power of ten that is no larger than `x`, a number above 0.
+fn exponent(x: f64) -> i32 {
+    // What is printed is exact, a logarithm is not.
+    format!("{x:e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0)
+}
+
+fn power_of_ten(e: i32) -> f64 {
+    format!("1e{e}").parse().unwrap_or(1.0)
+}
+
+/// The multiple of `10^e` next to `x`.
+fn rounded(x: f64, e: i32) -> f64 {
+    format!("{}e{e}", (x / power_of_ten(e)).round()).parse().unwrap_or(x)
+}
+
+/// The power of ten, a multiple of 3, that keeps labels of this size short.
+fn shared_power(size: f64) -> i32 {
+    match exponent(size) {
+        -2..5 => 0,
+        e => 3 * e.div_euclid(3),
+    }
+}
+
+/// `n*10^e` as a decimal number, with a true minus sign.
+fn decimal(n: i64, e: i32) -> String {
+    let digits = n.unsigned_abs().to_string();
+    let text = if n == 0 {
+        "0".to_owned()
+    } else if e >= 0 {
+        digits + &"0".repeat(e as usize)
+    } else {
+        let places = e.unsigned_abs() as usize;
+        let padded = format!("{digits:0>width$}", width = places + 1);
+        let (whole, part) = padded.split_at(padded.len() - places);
+        format!("{whole}.{part}")
+    };
+    if n < 0 { format!("\u{2212}{text}") } else { text }
+}
+
+fn superscript(e: i32) -> String {
+    let digit = |c: char| match c.to_digit(10) {
+        Some(1) => '\u{b9}',
+        Some(d @ 2..=3) => char::from_u32(0xb0 + d).unwrap_or('?'),
+        Some(d) => char::from_u32(0x2070 + d).unwrap_or('?'),
+        None => '\u{207b}',
+    };
+    e.to_string().chars().map(digit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis) -> Vec<&str> {
+        axis.ticks.iter().map(|tick| &*tick.label).collect()
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        assert_eq!(labels(&Axis::of_time(0.0, 20.0, 6)), ["0", "5", "10", "15", "20"]);
+        assert_eq!(labels(&Axis::of_time(0.0, 0.3, 4)), ["0", "0.1", "0.2", "0.3"]);
+        let axis = Axis::of_values(Some((-0.3, 1.1)), 5);
+        assert_eq!(labels(&axis), ["0", "0.5", "1.0"]);
+        let axis = Axis::of_values(Some((-5.0, 5.0)), 6);
+        assert_eq!(labels(&axis), ["\u{2212}4", "\u{2212}2", "0", "2", "4"]);
+    }
+
+    #[test]
+    fn long_numbers_are_shared_with_the_unit() {
+        let axis = Axis::of_time(0.0, 4e6, 5);
+        assert_eq!((&*labels(&axis).join(" "), &*axis.unit("s")), ("0 1 2 3 4", " [10\u{2076} s]"));
+        let axis = Axis::of_values(Some((0.0, 3e-5)), 4);
+        assert_eq!(
+            (&*labels(&axis).join(" "), &*axis.unit("")),
+            ("0 10 20 30", " [\u{d7}10\u{207b}\u{2076}]")
+        );
+        let axis = Axis::of_values(Some((1000.0, 1000.002)), 4);
+        assert_eq!(axis.unit("K"), " \u{2212} 1000 [10\u{207b}\u{b3} K]");
+        assert_eq!(labels(&axis), ["0", "1", "2"]);
+    }
+
+    #[test]
+    fn any_range_has_an_axis() {
+        let values = [0.0, 1.0, -1.0, 1e-320, 5e-310, 1e300, f64::MAX, f64::MIN, 1e12, -1e-12, 123_456.789];
+        for lo in values {
+            for hi in values.into_iter().filter(|hi| *hi >= lo) {
+                let axis = Axis::of_values(Some((lo, hi)), 5);
+                assert!((1..=7).contains(&axis.ticks.len()), "{lo} {hi} {axis:?}");
+                assert!(axis.ticks.iter().all(|t| (0.0..=1.0).contains(&t.share)), "{axis:?}");
+                assert!(axis.ticks.iter().all(|t| t.label.chars().count() <= 8), "{axis:?}");
+                assert!((0.0..=1.0).contains(&axis.share(lo)) && (0.0..=1.0).contains(&axis.share(hi)));
+            }
+        }
+    }
+}
