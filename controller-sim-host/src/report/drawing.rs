@@ -140,7 +140,7 @@ fn draw_level(level: &Level, plane: &Plane<'_>) -> Markup {
     let mut pen = Pen::default();
     pen.to(plane.x(from), plane.y(level.value));
     pen.to(plane.x(to), plane.y(level.value));
-    let owner = level.owner.map(|index| colour(index));
+    let owner = level.owner.map(colour);
     html! {
         path class={ "level " (owner.unwrap_or_default()) } d=(pen.finish()) { title { (level.label) } }
     }
