@@ -6,20 +6,32 @@
 //! | module | holds |
 //! |---|---|
 //! | [`setup`] | components and targets of the pinned toolchain, the tools for fuzzing |
+//! | [`browser`] | the browser, Node and packages that the checks of the report pages run with |
 //! | [`ladder`] | running the rungs in order, timing them, the summary |
 //! | [`rungs`] | what each rung of the ladder does |
+//! | [`report`] | the rung that opens the program's pages in a browser |
+//! | [`memory`] | the memory of long runs |
+//! | [`bench`] | the speed of the simulation beside a loop in Python |
+//! | [`long_runs`] | scenarios of any length for these |
 //! | [`checks`] | pure checks: dependency allow-list, same bits, file hygiene |
 //! | [`fuzz`] | bounded and long runs of the fuzz targets |
 //! | [`manifest`] | a reader for the few TOML files of this workspace |
 //! | [`shell`] | running commands and printing them |
+//! | [`usage`] | what a command used |
 
+mod bench;
+mod browser;
 mod checks;
 mod fuzz;
 mod ladder;
+mod long_runs;
 mod manifest;
+mod memory;
+mod report;
 mod rungs;
 mod setup;
 mod shell;
+mod usage;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -42,10 +54,10 @@ struct Command {
 }
 
 /// All commands in the order of the help.
-const COMMANDS: [Command; 6] = [
+const COMMANDS: [Command; 7] = [
     Command {
         name: "setup",
-        about: "add the components and targets that the pinned toolchain lacks",
+        about: "add what the toolchain lacks, and the browser for the reports",
         options: &[("--fuzz", "cargo-fuzz as well (needs a C++ compiler)")],
     },
     Command {
@@ -59,8 +71,13 @@ const COMMANDS: [Command; 6] = [
     },
     Command {
         name: "soak",
-        about: "the long runs: tests at their whole length (SOAK=1), then fuzzing",
+        about: "the long runs: tests with SOAK=1, 1e8 samples, fuzzing",
         options: &[("--minutes N", "fuzz for N minutes in all (default 30; 0: not at all)")],
+    },
+    Command {
+        name: "bench",
+        about: "the simulation beside a numpy loop; fails below 100 times",
+        options: &[],
     },
     Command { name: "docs", about: "build the documentation; warnings are errors", options: &[] },
     Command { name: "fix", about: "format all sources", options: &[] },
@@ -87,6 +104,7 @@ enum Request {
     Test(ladder::Options),
     ListRungs,
     Soak { minutes: u64 },
+    Bench,
     Docs,
     Fix,
 }
@@ -118,6 +136,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
         }
         Request::Setup { fuzz } => {
             let mut lacking = setup::toolchain(root)?;
+            lacking.extend(browser::ready(root)?.err());
             if fuzz {
                 lacking.extend(setup::fuzzing(root).err());
             }
@@ -133,6 +152,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
             Ok(())
         }
         Request::Soak { minutes } => soak(root, minutes),
+        Request::Bench => bench::run(root),
         Request::Docs => rungs::docs(root),
         Request::Fix => Cmd::cargo(root).args(["fmt", "--all"]).run(),
     }
@@ -142,6 +162,8 @@ fn perform(request: Request, root: &Path) -> Outcome {
 fn soak(root: &Path, minutes: u64) -> Outcome {
     // Tests that have a long form read SOAK; without it they do their bounded share.
     Cmd::cargo(root).env("SOAK", "1").args(["test", "--release", "-p", "controller-tests"]).run()?;
+    let program = rungs::program(root)?;
+    memory::soak(&program, &rungs::TempFolder::new("soak")?.0)?;
     if minutes == 0 {
         println!("no fuzzing: --minutes 0");
         return Ok(());
@@ -203,6 +225,7 @@ fn parse(args: &[String]) -> Result<Request, String> {
             }
             Ok(Request::Soak { minutes })
         }
+        "bench" => rest.option(&[]).map(|_| Request::Bench),
         "docs" => rest.option(&[]).map(|_| Request::Docs),
         "fix" => rest.option(&[]).map(|_| Request::Fix),
         other => Err(unknown("command", other, &COMMANDS.map(|c| c.name))),
@@ -338,6 +361,7 @@ mod tests {
         assert_eq!(words("soak"), Ok(Request::Soak { minutes: SOAK_MINUTES }));
         assert_eq!(words("soak --minutes 5"), Ok(Request::Soak { minutes: 5 }));
         assert_eq!(words("soak --minutes=0"), Ok(Request::Soak { minutes: 0 }));
+        assert_eq!(words("bench"), Ok(Request::Bench));
         let only = vec!["clippy".to_string(), "demo".to_string()];
         let options = ladder::Options { keep_going: true, only };
         assert_eq!(words("test --only clippy,demo --keep-going"), Ok(Request::Test(options)));

@@ -6,11 +6,12 @@ use crate::checks;
 use crate::fuzz;
 use crate::ladder::{Done, Rung};
 use crate::manifest::Manifest;
+use crate::report;
 use crate::setup::{self, Part, Toolchain};
 use crate::shell::{Cmd, Outcome, in_ci, target_dir};
 
 /// All rungs, in order.
-pub(crate) const RUNGS: [Rung; 11] = [
+pub(crate) const RUNGS: [Rung; 12] = [
     Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
     Rung { name: "format", about: "sources are formatted", run: format },
     Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
@@ -20,6 +21,7 @@ pub(crate) const RUNGS: [Rung; 11] = [
     Rung { name: "dependencies", about: "the core depends only on what is allowed", run: dependencies },
     Rung { name: "same-bits", about: "the same bits at every optimisation level", run: same_bits },
     Rung { name: "demo", about: "the program without arguments runs its scenario", run: demo },
+    Rung { name: "report", about: "pages are accessible, offline, legible, small", run: report::rung },
     Rung { name: "fuzz", about: "a bounded run of every fuzz target", run: fuzz_rung },
     Rung { name: "hygiene", about: "files are small, well named and finished", run: hygiene },
 ];
@@ -172,10 +174,15 @@ fn same_bits(root: &Path) -> Outcome<Done> {
     Ok(Done::Passed(format!("{lines} traces equal in {} builds", outputs.len())))
 }
 
-fn demo(root: &Path) -> Outcome<Done> {
-    // Built here and started there: outside the workspace cargo would choose another toolchain.
+/// Builds the program as it is shipped; gives its path. It is built in the workspace and started anywhere: outside of
+/// the workspace cargo would choose another toolchain.
+pub(crate) fn program(root: &Path) -> Outcome<PathBuf> {
     Cmd::cargo(root).args(["build", "--release", "-p", "controller-sim-host"]).run()?;
-    let program = target_dir(root).join("release").join(format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX));
+    Ok(target_dir(root).join("release").join(format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX)))
+}
+
+fn demo(root: &Path) -> Outcome<Done> {
+    let program = program(root)?;
     let folder = TempFolder::new("demo")?;
     let output = Cmd::new(&program, &folder.0).env("NO_COLOR", "1").capture()?;
     print!("{output}");
@@ -204,10 +211,11 @@ fn hygiene(root: &Path) -> Outcome<Done> {
 }
 
 /// An empty folder that goes away with this value.
-struct TempFolder(PathBuf);
+pub(crate) struct TempFolder(pub(crate) PathBuf);
 
 impl TempFolder {
-    fn new(purpose: &str) -> Outcome<Self> {
+    /// The purpose is part of its name.
+    pub(crate) fn new(purpose: &str) -> Outcome<Self> {
         let path = std::env::temp_dir().join(format!("controller-xtask-{purpose}-{}", std::process::id()));
         std::fs::create_dir(&path).map_err(|e| format!("cannot create {}: {e}", path.display()))?;
         Ok(Self(path))

@@ -76,7 +76,8 @@ impl Cmd {
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
     }
 
-    fn command(&self) -> Command {
+    /// The command as the standard library has it.
+    pub(crate) fn command(&self) -> Command {
         let mut command = Command::new(&self.program);
         command.args(&self.args).current_dir(&self.dir).stdin(Stdio::null());
         // Set by the `cargo run` that started this program. A child must choose its own: with CARGO inherited,
