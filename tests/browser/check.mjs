@@ -3,7 +3,7 @@
 
 import { mkdir, stat } from 'node:fs/promises';
 import { start } from './browser.mjs';
-import { checkPage, eachOf, options } from './page_check.mjs';
+import { checkPage, eachOf, options, within } from './page_check.mjs';
 
 const { rest: pages, ...named } = options(process.argv.slice(2));
 if (pages.length === 0) {
@@ -13,7 +13,7 @@ await mkdir(named.shots, { recursive: true });
 const tools = await start(named);
 let count = 0;
 try {
-  const results = await eachOf(pages, 2, (page) => checkPage(tools, page, named));
+  const results = await eachOf(pages, 2, (page) => within(180, page, checkPage(tools, page, named)));
   for (const [at, { name, faults, sheets, load }] of results.entries()) {
     const { size } = await stat(pages[at]);
     console.log(`${name}: ${(size / 1000).toFixed(0)} kB, loads in ${load.toFixed(0)} ms, ${sheets} sheets of A4`);

@@ -46,6 +46,15 @@ export async function checkPage({ browser, axe }, file, { shots, only } = {}) {
   return { name, faults: [...faults.values()], ...facts };
 }
 
+/** The answer of `work`, or an error when it takes longer than `seconds`: a script of a page may never end. */
+export async function within(seconds, what, work) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`${what} took more than ${seconds} s`)), seconds * 1000);
+  });
+  return Promise.race([work, late]).finally(() => clearTimeout(timer));
+}
+
 /** Calls `work` with every item, `width` of them at a time; the answers in the order of the items. */
 export async function eachOf(items, width, work) {
   const answers = new Array(items.length);

@@ -5,7 +5,7 @@
 import { mkdir, writeFile } from 'node:fs/promises';
 import path from 'node:path';
 import { start } from './browser.mjs';
-import { checkPage, eachOf, options } from './page_check.mjs';
+import { checkPage, eachOf, options, within } from './page_check.mjs';
 
 const GOOD = `<!doctype html>
 <html lang="en">
@@ -100,7 +100,7 @@ try {
       wrong.push(`${name}: the page is not broken`);
       return;
     }
-    const { faults } = await checkPage(tools, await write(name, text), { only: [variant] });
+    const { faults } = await within(60, name, checkPage(tools, await write(name, text), { only: [variant] }));
     if (!faults.some((fault) => fault.kind === kind)) {
       wrong.push(`${name}: no fault ${kind} in ${variant}; found: ${faults.map((f) => f.kind).join(', ') || 'none'}`);
     }
