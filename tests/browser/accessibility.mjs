@@ -1,4 +1,4 @@
-// Accessibility: all default rules of axe-core, and the contrast of text in pictures, which axe-core leaves open.
+// Accessibility: all default rules of axe-core, and the contrast of what is in pictures, which axe-core leaves open.
 
 /** The faults of an open page. */
 export async function accessibility(page, axe) {
@@ -30,7 +30,7 @@ export async function accessibility(page, axe) {
   return faults;
 }
 
-/** Runs in the page: texts in pictures with less contrast than WCAG 2 AA asks for. */
+/** Runs in the page: texts and thick lines in pictures with less contrast than WCAG 2 AA asks for (1.4.3, 1.4.11). */
 function pictureContrast() {
   const canvas = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
   /** Any CSS colour as red, green, blue, opacity, each 0 to 1; null when it is no colour. */
@@ -74,11 +74,20 @@ function pictureContrast() {
     const start = parse(paper) ?? [1, 1, 1, 1];
     return chain.reduce((below, e) => over(parse(getComputedStyle(e).backgroundColor) ?? [0, 0, 0, 0], below, 1), start);
   };
-  /** The colour below a point of the screen: filled shapes of the picture painted before `text`. */
-  const below = (svg, text, x, y) => {
+  /** The picture that an element is in, with all that it is nested in. */
+  const picture = (element) => {
+    let svg = element.ownerSVGElement;
+    while (svg.ownerSVGElement) {
+      svg = svg.ownerSVGElement;
+    }
+    return svg;
+  };
+  /** The colour below a point of the screen: filled shapes of the picture painted before `element`. */
+  const below = (element, x, y) => {
+    const svg = picture(element);
     let colour = behind(svg);
     for (const shape of svg.querySelectorAll('rect, path, polygon, circle, ellipse')) {
-      const first = shape.compareDocumentPosition(text) & Node.DOCUMENT_POSITION_FOLLOWING;
+      const first = shape.compareDocumentPosition(element) & Node.DOCUMENT_POSITION_FOLLOWING;
       const matrix = shape.getScreenCTM();
       if (!first || !matrix || !shown(shape) || shape.closest('defs, clipPath, mask, pattern, symbol')) {
         continue;
@@ -105,18 +114,33 @@ function pictureContrast() {
       faults.push({ kind: 'picture-contrast', text: `"${words}": fill ${style.fill} is no plain colour` });
       continue;
     }
-    const svg = text.ownerSVGElement;
     const matrix = text.getScreenCTM();
     const size = Number.parseFloat(style.fontSize) * Math.sqrt(Math.abs(matrix.a * matrix.d - matrix.b * matrix.c));
     const large = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700);
     // At both ends and in the middle: a label may reach over the edge of a band.
     for (const at of [0.05, 0.5, 0.95]) {
-      const ground = below(svg, text, box.left + at * box.width, box.top + box.height / 2);
+      const ground = below(text, box.left + at * box.width, box.top + box.height / 2);
       const got = ratio(over(fill, ground, Number(style.fillOpacity) * opacity(text)), ground);
       if (got < (large ? 3 : 4.5)) {
         faults.push({ kind: 'picture-contrast', text: `"${words}": contrast ${got.toFixed(2)}` });
         break;
       }
+    }
+  }
+  // A thick line is a signal or its key in the legend; thin ones are grid, axes and marks.
+  for (const line of document.querySelectorAll('svg path, svg polyline, svg line')) {
+    const style = getComputedStyle(line);
+    const stroke = style.stroke === 'none' ? null : parse(style.stroke);
+    const matrix = line.getScreenCTM();
+    const thick = Number.parseFloat(style.strokeWidth) >= 1.5;
+    if (!stroke || !matrix || !thick || !shown(line) || line.closest('defs, clipPath') || line.getTotalLength() === 0) {
+      continue;
+    }
+    const start = line.getPointAtLength(0).matrixTransform(matrix);
+    const ground = below(line, start.x, start.y);
+    const got = ratio(over(stroke, ground, Number(style.strokeOpacity) * opacity(line)), ground);
+    if (got < 3) {
+      faults.push({ kind: 'line-contrast', text: `a line of colour ${style.stroke}: contrast ${got.toFixed(2)}` });
     }
   }
   return faults;

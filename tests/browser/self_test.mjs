@@ -18,7 +18,7 @@ const GOOD = `<!doctype html>
 body { margin: 0; background: #fff; color: #222; font: 16px sans-serif; }
 svg { display: block; width: 100%; height: auto; }
 svg text { font-size: 11px; fill: #333; }
-svg path { fill: none; stroke: #06c; }
+svg path { fill: none; stroke: #06c; stroke-width: 2; }
 figure { margin: 0; break-inside: avoid; }
 @media (prefers-color-scheme: dark) {
   body { background: #111; color: #eee; }
@@ -61,6 +61,9 @@ const BROKEN = [
   ['pale-label-in-the-dark', 'picture-contrast', 'dark', css('svg text { fill: #222 !important; }')],
   ['label-on-a-band', 'picture-contrast', 'light', ['<text', '<rect width="200" height="60" fill="#444"/><text']],
   ['faint-group', 'picture-contrast', 'light', ['<text x="10" y="20">level</text>', '<g opacity="0.3"><text x="10" y="20">level</text></g>']],
+  ['label-in-a-nested-picture', 'picture-contrast', 'light', ['<text x="10" y="20">level</text>', '<rect width="200" height="60" fill="#444"/><svg><text x="10" y="20">level</text></svg>']],
+  ['faint-line', 'line-contrast', 'light', css('svg path { stroke: #bbd; }')],
+  ['faint-line-in-the-dark', 'line-contrast', 'dark', css('svg path { stroke: #024; }')],
   ['picture-from-outside', 'request', 'light', body(`<img alt="" src="${outside('http', 'x.png')}">`)],
   ['picture-from-beside', 'request', 'light', body('<img alt="" src="beside.png">')],
   ['style-from-outside', 'request', 'light', css(`h1 { background-image: url(${outside('https', 'x.png')}); }`)],
