@@ -28,8 +28,8 @@ mod trial;
 pub use cases::{Case, ReadAll, read_with};
 pub use fault::{Fault, Place, Related, SourceText, code};
 pub use files::{Files, FolderFiles, NoFiles};
-pub use override_key::override_key;
 pub(crate) use number::{show, show_short};
+pub use override_key::override_key;
 pub use read::{Read, VERSION, read};
 pub use signal::{Between, Recording, Signal};
 

@@ -303,3 +303,66 @@ fn lines(level: f64, list: &[(f64, Signal)], delay: f64, ts: f64) -> Part {
     }
     Part::Lines { list, current: 0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(list: &[(f64, Signal)], ts: f64, n: u64) -> Vec<f64> {
+        let mut curve = Curve::new(0.5, list, 0.0, ts);
+        (0..n).map(|k| curve.advance_to(k as f64)).collect()
+    }
+
+    fn recording(between: Between) -> Signal {
+        let (times, values) = (vec![0.0, 1.0, 3.0], vec![1.0, 2.0, 4.0]);
+        Signal::Recorded(Arc::new(Recording { name: "x".to_owned(), times, values, between }))
+    }
+
+    #[test]
+    fn a_recording_is_the_level_until_the_next_step() {
+        let list = |between| [(1.0, recording(between)), (4.5, Signal::Step(7.0))];
+        let held = values(&list(Between::Hold), 0.5, 11);
+        assert_eq!(held, [0.5, 0.5, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 4.0, 7.0, 7.0]);
+        let line = values(&list(Between::Line), 0.5, 11);
+        assert_eq!(line, [0.5, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 7.0, 7.0]);
+    }
+
+    #[test]
+    fn everything_else_adds_to_the_level() {
+        let list = [
+            (0.0, Signal::Step(1.0)),
+            (1.0, Signal::Ramp { slope: 2.0, duration: 1.0 }),
+            (2.0, Signal::Pulse { height: -1.0, duration: 1.0 }),
+            (2.0, recording(Between::Hold)),
+            (4.0, Signal::Step(0.0)),
+        ];
+        // The ramp leaves 2 behind; the recording takes the level of 1 over.
+        assert_eq!(values(&list, 0.5, 10), [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 4.0, 4.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn a_sine_begins_and_ends() {
+        let sine = Signal::Sine { amplitude: 2.0, period: 4.0, phase: 0.0, duration: 4.0 };
+        for (value, exact) in
+            values(&[(1.0, sine)], 1.0, 7).into_iter().zip([0.5, 0.5, 2.5, 0.5, -1.5, 0.5, 0.5])
+        {
+            assert!((value - exact).abs() < 1e-12, "{value} {exact}");
+        }
+    }
+
+    /// The walk of the delayed curve is that of the other one, later: the plant and the record see the same steps.
+    #[test]
+    fn a_walk_is_the_same_behind_a_delay() {
+        let walk = Signal::Walk { std: 1.0, every: 0.25, seed: 5, duration: 10.0 };
+        let list = [(0.5, walk)];
+        let mut now = Curve::new(0.0, &list, 0.0, 0.5);
+        let mut later = Curve::new(0.0, &list, 1.5, 0.5);
+        let now: Vec<f64> = (0..40).map(|k| now.advance_to(f64::from(k))).collect();
+        let later: Vec<f64> = (0..40).map(|k| later.advance_to(f64::from(k))).collect();
+        assert_eq!(now[..37], later[3..]);
+        assert_eq!(now[0], 0.0);
+        assert!(now[1] != 0.0 && now[1] != now[2]);
+        // Steps at 0.5, 0.75 .. 10.25: none after the duration.
+        assert!(now[21..].iter().all(|x| *x == now[21]) && now[20] != now[21]);
+    }
+}

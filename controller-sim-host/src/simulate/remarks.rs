@@ -86,7 +86,13 @@ impl Watch {
             && last > 6.0 * noise
             && last > 0.05 * self.tenths.iter().fold(0.0_f64, |a, b| a.max(*b))
         {
-            say(format!("the error does not die out: still {last:.3} at the end"));
+            // A ramp makes an error grow, too, but ever slower; an unstable loop by a factor from tenth to tenth.
+            let grows = self.tenths[6..].windows(2).all(|pair| pair[1] > 1.5 * pair[0]);
+            say(if grows {
+                format!("the error grows to the end, to {last:.3}: the loop is unstable")
+            } else {
+                format!("the error does not die out: still {last:.3} at the end")
+            });
         }
         list
     }
