@@ -2,7 +2,8 @@
 
 use super::fault::Fault;
 use super::files::Files;
-use super::read::read;
+use super::library::Library;
+use super::read::{Input, read_one};
 use super::{Read, Scenario};
 use crate::simulate::Precision;
 
@@ -28,14 +29,16 @@ pub struct Case {
 /// messages call it.
 ///
 /// # Errors
-/// As for [`read`]; those inside an included file have its text as their [source](Fault::source).
+/// As for [`read`](super::read); those inside an included file have its text as their [source](Fault::source).
 pub fn read_with(
     name: &str,
     text: &str,
     precision: Precision,
     files: &dyn Files,
 ) -> Result<ReadAll, Vec<Fault>> {
-    let _ = (name, files);
-    let Read { scenario, warnings } = read(text, precision)?;
+    let _ = name;
+    let library = Library::new(files);
+    let input = Input { text, replaced: None, precision, library: &library, takes_sweep: false };
+    let Read { scenario, warnings } = read_one(&input)?;
     Ok(ReadAll { cases: vec![Case { label: None, scenario }], warnings })
 }

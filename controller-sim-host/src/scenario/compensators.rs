@@ -1,7 +1,7 @@
 //! The keys `estimator` and `observer` of a controller.
 
-use super::expression;
 use super::fault::{Fault, code};
+use super::models;
 use super::number::Allowed;
 use super::places::Places;
 use super::sections::take;
@@ -119,7 +119,7 @@ fn observer(part: Table<'_>, config: &mut ObserverConfig, places: &mut Places) {
             places.set(param, part.name("model"), span.clone());
         }
     }
-    if let Some(model) = expression::read(&part, "model") {
+    if let Some(model) = models::value(&part, "model") {
         match model.value.to_plant_model() {
             Ok(model) => config.model = model,
             Err(error) => {

@@ -6,7 +6,8 @@ use super::fault::{Fault, code};
 use super::pid::PidDraft;
 use super::places::Places;
 use super::sections::{alarms, anti_windup, fallback, limits, mode, range, setpoint, take, take_optional};
-use super::table::{Table, shortened};
+use super::table::Table;
+use super::value::shortened;
 use controller_core::{ControllerConfig, Mode, Param};
 use std::ops::Range;
 

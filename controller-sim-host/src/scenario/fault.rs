@@ -103,6 +103,17 @@ impl Fault {
         self
     }
 
+    /// The same fault of a text that begins at `offset` of a longer one.
+    #[must_use]
+    pub(super) fn shifted(mut self, offset: usize) -> Self {
+        let shift = |span: &Range<usize>| span.start + offset..span.end + offset;
+        self.span = shift(&self.span);
+        if let Some(related) = &mut self.related {
+            related.span = shift(&related.span);
+        }
+        self
+    }
+
     /// Where it is: in `text`, the text that was read, unless the fault has a [source](Self::source) of its own.
     #[must_use]
     pub fn place(&self, text: &str) -> Place {

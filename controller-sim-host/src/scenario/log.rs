@@ -7,7 +7,7 @@ use std::ops::Range;
 /// More faults than anyone reads; a text of a million wrong keys must not take for ever.
 pub(super) const MOST: usize = 100;
 
-/// The text that is read, and what was found in it so far.
+/// The text that is read, that of all files after one another, and what was found in it so far.
 ///
 /// Shared by everything that reads, hence the cells.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 use super::fault::{Fault, code};
 use super::key_path::{self, Part};
 use super::suggest::closest;
-use super::table::shortened;
+use super::value::shortened;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -26,7 +26,7 @@ use toml::de::{DeTable, DeValue};
 /// assert!(faster.contains("pid = { kp = 2.5 }"));
 /// let other = override_key(text, "plant.tf", "2/(1+s)").expect("it is there");
 /// assert!(other.contains("tf = \"2/(1+s)\""));
-/// let fault = override_key(text, "controller.P.pid.kp", "2.5").expect_err("no such controller");
+/// let fault = override_key(text, "controller.pi.pid.kp", "2.5").expect_err("no such controller");
 /// assert_eq!(fault.help.as_deref(), Some("did you mean \"PI\"?"));
 /// ```
 pub fn override_key(text: &str, key: &str, value: &str) -> Result<String, Fault> {

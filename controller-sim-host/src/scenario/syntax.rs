@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, boundary, code};
 use super::number::without_unit;
-use super::table::shortened;
+use super::value::shortened;
 use std::ops::Range;
 
 /// The message for braces that are not closed.
@@ -84,7 +84,8 @@ pub(super) fn is_credible(text: &str, fault: &Fault, syntax: &[Fault]) -> bool {
     let lines: Vec<Range<usize>> = syntax.iter().map(|other| line_of(text, other.span.start)).collect();
     let structure_broken = lines.iter().any(|line| is_header(text, line))
         || syntax.iter().any(|other| other.message == OPEN_BRACE);
-    let certain = [code::WRONG_TYPE, code::OUT_OF_RANGE, code::EXPRESSION].contains(&fault.code)
+    let certain = [code::WRONG_TYPE, code::OUT_OF_RANGE, code::EXPRESSION, code::FILE, code::RECORDING]
+        .contains(&fault.code)
         || (fault.code == code::UNKNOWN_KEY && !structure_broken);
     // What could not be read has no place.
     certain && !fault.span.is_empty() && !lines.contains(&line)
@@ -197,7 +198,7 @@ fn in_plain_words(message: &str, syntax: impl FnOnce(String) -> Fault) -> Fault 
         }
         _ if message.starts_with("missing value") => ("a value is missing here", "an entry is `key = value`"),
         _ if message.starts_with("unclosed array") || message.starts_with("missing comma between array") => {
-            ("this list is not closed", "no key of a scenario takes a list")
+            ("this list is not closed", "a list is written as `[1.0, 2.0]`")
         }
         _ if message.starts_with("invalid exponent") => {
             ("a power of ten without digits", "write `1e3` or `1e-3`")

@@ -2,15 +2,16 @@
 
 use super::fault::{Fault, code};
 use super::log::Log;
-use super::number::{Allowed, show, without_unit};
+use super::number::Allowed;
 use super::suggest::closest;
+use super::value::{number_in_text, shortened, to_f64, type_name};
 use std::cell::RefCell;
 use std::ops::Range;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The keys that stand above the first table.
-const ABOVE_TABLES: [&str; 7] = ["version", "ts", "duration", "latency", "substeps", "title", "description"];
+const ABOVE_TABLES: [&str; 8] =
+    ["version", "ts", "duration", "latency", "substeps", "title", "description", "include"];
 
 /// A value and where it stands.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,27 +25,38 @@ pub(super) struct Located<T> {
 #[derive(Debug)]
 pub(super) struct Table<'a> {
     entries: &'a DeTable<'a>,
+    /// Where its text begins among all texts.
+    offset: usize,
     /// Where to point at for what is missing: the header, or the whole inline table.
     pub(super) place: Range<usize>,
     path: String,
     is_root: bool,
     asked: RefCell<Vec<&'static str>>,
     /// Keys that must be there and are not, with their faults: a misspelt key takes its own away.
-    missing: RefCell<Vec<(&'static str, Fault)>>,
+    missing: RefCell<Vec<(Vec<&'static str>, Fault)>>,
     pub(super) log: &'a Log<'a>,
 }
 
 impl<'a> Table<'a> {
-    pub(super) fn root(entries: &'a DeTable<'a>, log: &'a Log<'a>) -> Self {
-        for key in ABOVE_TABLES.into_iter().filter(|&key| !entries.contains_key(key)) {
+    /// The whole of a text that begins at `offset` among all texts.
+    pub(super) fn root(entries: &'a DeTable<'a>, offset: usize, log: &'a Log<'a>) -> Self {
+        // What an included text lacks may stand in the other one.
+        for key in ABOVE_TABLES.into_iter().filter(|&key| offset == 0 && !entries.contains_key(key)) {
             log.absent_above(key);
         }
-        Self { is_root: true, ..Self::new(entries, 0..0, String::new(), log) }
+        Self { is_root: true, ..Self::new(entries, offset, offset..offset, String::new(), log) }
     }
 
-    fn new(entries: &'a DeTable<'a>, place: Range<usize>, path: String, log: &'a Log<'a>) -> Self {
+    fn new(
+        entries: &'a DeTable<'a>,
+        offset: usize,
+        place: Range<usize>,
+        path: String,
+        log: &'a Log<'a>,
+    ) -> Self {
         Self {
             entries,
+            offset,
             place,
             path,
             is_root: false,
@@ -59,7 +71,18 @@ impl<'a> Table<'a> {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
     }
 
-    fn entry(&self, key: &'static str) -> Option<(Range<usize>, &'a Spanned<DeValue<'a>>)> {
+    /// The name of the table itself.
+    pub(super) fn whole_name(&self) -> String {
+        self.path.clone()
+    }
+
+    /// The place of something in this table's text among all texts.
+    fn shift(&self, span: Range<usize>) -> Range<usize> {
+        span.start + self.offset..span.end + self.offset
+    }
+
+    /// The place of the key, its value and the place of that.
+    fn entry(&self, key: &'static str) -> Option<(Range<usize>, &'a DeValue<'a>, Range<usize>)> {
         {
             let mut asked = self.asked.borrow_mut();
             if !asked.contains(&key) {
@@ -68,58 +91,73 @@ impl<'a> Table<'a> {
         }
         // The map borrows the key as text, which loses the place of the key: look it up together with the
         // value.
-        self.entries.get_key_value(key).map(|(k, v)| (k.span(), v))
+        self.entries
+            .get_key_value(key)
+            .map(|(k, v)| (self.shift(k.span()), v.get_ref(), self.shift(v.span())))
     }
 
     /// The value's place, when the key is there.
     pub(super) fn span(&self, key: &'static str) -> Option<Range<usize>> {
-        self.entry(key).map(|(_, value)| value.span())
+        self.entry(key).map(|(_, _, span)| span)
     }
 
     /// The key's own place, when it is there.
     pub(super) fn key_span(&self, key: &'static str) -> Option<Range<usize>> {
-        self.entry(key).map(|(key, _)| key)
+        self.entry(key).map(|(key, ..)| key)
     }
 
     /// Reports that `key` is not there; `example` says how to write it.
     pub(super) fn missing(&self, key: &'static str, example: &str) {
-        let message = format!("`{}` is missing", self.name(key));
-        let fault = Fault::new(code::MISSING_KEY, self.place.clone(), message);
-        self.missing.borrow_mut().push((key, fault.help(format!("write {example}"))));
+        self.missing_one_of(&[key], example);
     }
 
-    /// Reports that the value of `key` is of the wrong type.
-    fn wrong_type(
+    /// Reports that none of `keys` is there, of which the first is the usual one.
+    pub(super) fn missing_one_of(&self, keys: &[&'static str], example: &str) {
+        let Some(first) = keys.first() else { return };
+        let message = format!("`{}` is missing", self.name(first));
+        let fault = Fault::new(code::MISSING_KEY, self.place.clone(), message);
+        self.missing.borrow_mut().push((keys.to_vec(), fault.help(format!("write {example}"))));
+    }
+
+    /// Reports that a value, that of `key` or one in it, is of the wrong type.
+    pub(super) fn wrong_type(
         &self,
         key: &'static str,
-        value: &Spanned<DeValue<'a>>,
+        value: &DeValue<'_>,
+        span: Range<usize>,
         needed: &str,
         help: Option<String>,
     ) {
-        let is = type_name(value.get_ref());
-        let mut fault = Fault::new(
-            code::WRONG_TYPE,
-            value.span(),
-            format!("`{}` is {is}; {needed} is needed", self.name(key)),
-        );
+        let message = format!("`{}` is {}; {needed} is needed", self.name(key), type_name(value));
+        let mut fault = Fault::new(code::WRONG_TYPE, span, message);
         fault.help = help;
         self.log.fault(fault);
     }
 
     /// A number, infinite ones and NaN included.
     pub(super) fn any_number(&self, key: &'static str) -> Option<Located<f64>> {
-        let (_, value) = self.entry(key)?;
-        if let Some(number) = to_f64(value.get_ref()) {
-            return Some(Located { value: number, span: value.span() });
+        let (_, value, span) = self.entry(key)?;
+        if let Some(value) = to_f64(value) {
+            return Some(Located { value, span });
         }
-        let help = value.get_ref().as_str().and_then(|text| number_in_text(key, text));
-        self.wrong_type(key, value, "a number", help);
+        let help = value.as_str().and_then(|text| number_in_text(key, text));
+        self.wrong_type(key, value, span, "a number", help);
         None
     }
 
     /// A finite number; `allowed` is what the message on another one says, when it is known here.
     pub(super) fn number(&self, key: &'static str, allowed: Option<Allowed>) -> Option<Located<f64>> {
         let number = self.any_number(key)?;
+        self.finite(key, number, allowed)
+    }
+
+    /// Reports a number that is not finite.
+    fn finite(
+        &self,
+        key: &'static str,
+        number: Located<f64>,
+        allowed: Option<Allowed>,
+    ) -> Option<Located<f64>> {
         if number.value.is_finite() {
             return Some(number);
         }
@@ -153,14 +191,13 @@ impl<'a> Table<'a> {
 
     /// A whole number within `min..=max`.
     pub(super) fn integer_in(&self, key: &'static str, min: u64, max: u64) -> Option<Located<u64>> {
-        let (_, value) = self.entry(key)?;
-        let span = value.span();
-        let Some(integer) = value.get_ref().as_integer() else {
-            let number = to_f64(value.get_ref()).or_else(|| value.get_ref().as_str()?.parse().ok());
+        let (_, value, span) = self.entry(key)?;
+        let Some(integer) = value.as_integer() else {
+            let number = to_f64(value).or_else(|| value.as_str()?.parse().ok());
             let help = number
                 .filter(|x| x.fract() == 0.0 && x.abs() < 1e15)
                 .map(|x| format!("write `{key} = {x:.0}`"));
-            self.wrong_type(key, value, "a whole number", help);
+            self.wrong_type(key, value, span, "a whole number", help);
             return None;
         };
         match u64::from_str_radix(integer.as_str(), integer.radix()) {
@@ -175,21 +212,21 @@ impl<'a> Table<'a> {
 
     /// A text.
     pub(super) fn text(&self, key: &'static str) -> Option<Located<&'a str>> {
-        let (_, value) = self.entry(key)?;
-        if let Some(text) = value.get_ref().as_str() {
-            return Some(Located { value: text, span: value.span() });
+        let (_, value, span) = self.entry(key)?;
+        if let Some(value) = value.as_str() {
+            return Some(Located { value, span });
         }
-        self.wrong_type(key, value, "a text", Some(format!("write it in quotes: `{key} = \"...\"`")));
+        self.wrong_type(key, value, span, "a text", Some(format!("write it in quotes: `{key} = \"...\"`")));
         None
     }
 
     /// `true` or `false`.
     pub(super) fn flag(&self, key: &'static str) -> Option<Located<bool>> {
-        let (_, value) = self.entry(key)?;
-        if let Some(flag) = value.get_ref().as_bool() {
-            return Some(Located { value: flag, span: value.span() });
+        let (_, value, span) = self.entry(key)?;
+        if let Some(value) = value.as_bool() {
+            return Some(Located { value, span });
         }
-        self.wrong_type(key, value, "`true` or `false`", Some("without quotes".to_owned()));
+        self.wrong_type(key, value, span, "`true` or `false`", Some("without quotes".to_owned()));
         None
     }
 
@@ -223,49 +260,96 @@ impl<'a> Table<'a> {
 
     /// Whether the value of `key` is a text; says nothing about another type.
     pub(super) fn is_text(&self, key: &'static str) -> bool {
-        self.entry(key).is_some_and(|(_, value)| value.get_ref().is_str())
+        self.entry(key).is_some_and(|(_, value, _)| value.is_str())
     }
 
     /// Whether the value of `key` is a table; says nothing about another type.
     pub(super) fn is_table(&self, key: &'static str) -> bool {
-        self.entry(key).is_some_and(|(_, value)| value.get_ref().is_table())
+        self.entry(key).is_some_and(|(_, value, _)| value.is_table())
     }
 
     /// A table; `example` says how to write one.
     pub(super) fn table(&self, key: &'static str, example: &str) -> Option<Table<'a>> {
-        let (_, value) = self.entry(key)?;
-        if let Some(entries) = value.get_ref().as_table() {
-            return Some(Table::new(entries, value.span(), self.name(key), self.log));
+        let (_, value, span) = self.entry(key)?;
+        if let Some(entries) = value.as_table() {
+            return Some(Table::new(entries, self.offset, span, self.name(key), self.log));
         }
-        self.wrong_type(key, value, "a table", Some(format!("write {example}")));
+        self.wrong_type(key, value, span, "a table", Some(format!("write {example}")));
         None
     }
 
     /// The tables of `[[key]]`, none when there is no such key.
     pub(super) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
-        let Some((_, value)) = self.entry(key) else {
+        let Some((_, value, span)) = self.entry(key) else {
             return Vec::new();
         };
         let help = format!("each {key} begins with a line `[[{key}]]`");
-        let Some(list) = value.get_ref().as_array() else {
-            self.wrong_type(key, value, "a list of tables", Some(help));
+        let Some(list) = value.as_array() else {
+            self.wrong_type(key, value, span, "a list of tables", Some(help));
             return Vec::new();
         };
         let mut tables = Vec::new();
         for item in list.iter() {
             match item.get_ref().as_table() {
                 // Keys of a list element are called by their own names: the place says which element it is.
-                Some(entries) => tables.push(Table::new(entries, item.span(), String::new(), self.log)),
-                None => self.wrong_type(key, item, "a table", Some(help.clone())),
+                Some(entries) => {
+                    let place = self.shift(item.span());
+                    tables.push(Table::new(entries, self.offset, place, String::new(), self.log));
+                }
+                None => {
+                    let place = self.shift(item.span());
+                    self.wrong_type(key, item.get_ref(), place, "a table", Some(help.clone()));
+                }
             }
         }
         tables
     }
 
+    /// The items of a list, each with its place; a value that is no list is taken as the only one.
+    pub(super) fn items(&self, key: &'static str) -> Vec<Located<&'a DeValue<'a>>> {
+        match self.entry(key) {
+            None => Vec::new(),
+            Some((_, DeValue::Array(list), _)) => list
+                .iter()
+                .map(|item| Located { value: item.get_ref(), span: self.shift(item.span()) })
+                .collect(),
+            Some((_, value, span)) => vec![Located { value, span }],
+        }
+    }
+
+    /// The finite numbers of a list of `1..=most`; `example` says how to write one.
+    pub(super) fn numbers(&self, key: &'static str, most: usize, example: &str) -> Option<Located<Vec<f64>>> {
+        let (_, value, span) = self.entry(key)?;
+        if !value.is_array() {
+            self.wrong_type(key, value, span, "a list of numbers", Some(format!("write {example}")));
+            return None;
+        }
+        let items = self.items(key);
+        if items.is_empty() || items.len() > most {
+            let message = format!("`{}` has {} numbers; allowed: 1 to {most}", self.name(key), items.len());
+            self.log.fault(Fault::new(code::OUT_OF_RANGE, span, message).help(format!("write {example}")));
+            return None;
+        }
+        let numbers = items.into_iter().map(|item| match to_f64(item.value) {
+            Some(value) => self.finite(key, Located { value, span: item.span }, None),
+            None => {
+                self.wrong_type(key, item.value, item.span, "a number", Some(format!("write {example}")));
+                None
+            }
+        });
+        // All of them, for all faults at once.
+        let numbers: Vec<Option<Located<f64>>> = numbers.collect();
+        let value = numbers.into_iter().map(|number| number.map(|n| n.value)).collect::<Option<_>>()?;
+        Some(Located { value, span })
+    }
+
     /// The keys that are there, in the order they were written, each with the key's and the value's place.
     pub(super) fn written(&self) -> Vec<(&'a str, Range<usize>, Range<usize>)> {
-        let mut keys: Vec<_> =
-            self.entries.iter().map(|(key, value)| (&**key.get_ref(), key.span(), value.span())).collect();
+        let mut keys: Vec<_> = self
+            .entries
+            .iter()
+            .map(|(key, value)| (&**key.get_ref(), self.shift(key.span()), self.shift(value.span())))
+            .collect();
         keys.sort_by_key(|(_, span, _)| span.start);
         keys
     }
@@ -290,7 +374,7 @@ impl<'a> Table<'a> {
                 continue;
             }
             let meant = closest(key, &absent).or_else(|| closest(key, &asked));
-            self.missing.borrow_mut().retain(|(other, _)| Some(*other) != meant);
+            self.missing.borrow_mut().retain(|(keys, _)| meant.is_none_or(|meant| !keys.contains(&meant)));
             let help = match meant {
                 Some(meant @ ("event" | "controller")) => format!("did you mean `[[{meant}]]`?"),
                 Some(meant) => format!("did you mean `{meant}`?"),
@@ -298,53 +382,12 @@ impl<'a> Table<'a> {
             };
             self.log.fault(Fault::new(code::UNKNOWN_KEY, span, message).help(help));
         }
-        for (key, fault) in self.missing.take() {
+        for (keys, fault) in self.missing.take() {
             // One that stands below a table is reported there.
-            if !(self.is_root && ABOVE_TABLES.contains(&key) && !self.log.is_wanted_above(key)) {
+            let below = |key: &&str| ABOVE_TABLES.contains(key) && !self.log.is_wanted_above(key);
+            if !(self.is_root && keys.iter().any(below)) {
                 self.log.fault(fault);
             }
         }
-    }
-}
-
-/// Text from the scenario as it may stand in a message: not too long, on one line.
-pub(super) fn shortened(text: &str) -> String {
-    let clean: String = text.chars().take(60).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().count() > 60 { format!("{clean}...") } else { clean }
-}
-
-fn to_f64(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::Integer(n) => match i128::from_str_radix(n.as_str(), n.radix()) {
-            #[allow(clippy::cast_precision_loss)] // the nearest number is what is meant
-            Ok(n) => Some(n as f64),
-            Err(_) if n.radix() == 10 => n.as_str().parse().ok(),
-            Err(_) => Some(f64::INFINITY),
-        },
-        DeValue::Float(x) => x.as_str().parse().ok(),
-        _ => None,
-    }
-}
-
-/// Help for a number that was written as a text.
-fn number_in_text(key: &str, text: &str) -> Option<String> {
-    if let Some(help) = without_unit(text.trim()) {
-        return Some(help);
-    }
-    let with_point = text.trim().replace(',', ".");
-    let number: f64 = with_point.parse().ok()?;
-    let quotes = if text.contains(',') { "without quotes and with a point" } else { "without quotes" };
-    Some(format!("write it {quotes}: `{key} = {}`", show(number)))
-}
-
-fn type_name(value: &DeValue<'_>) -> &'static str {
-    match value {
-        DeValue::String(_) => "a text",
-        DeValue::Integer(_) | DeValue::Float(_) => "a number",
-        DeValue::Boolean(true) => "`true`",
-        DeValue::Boolean(false) => "`false`",
-        DeValue::Datetime(_) => "a date",
-        DeValue::Array(_) => "a list",
-        DeValue::Table(_) => "a table",
     }
 }

@@ -2,7 +2,8 @@
 
 use super::Units;
 use super::fault::{Fault, code};
-use super::table::{Table, shortened};
+use super::table::Table;
+use super::value::shortened;
 
 /// Longest title, in characters.
 const LONGEST_TITLE: usize = 120;
