@@ -4,12 +4,13 @@ use super::controllers::{Draft, PARAMETER_KEYS};
 use super::fault::{Fault, code};
 use super::number::{Allowed, show};
 use super::sections::{mode, signal};
+use super::signals;
 use super::suggest::closest;
-use super::table::{Located, Table};
+use super::table::Table;
 use super::texts;
 use super::trial::{self, Context};
 use super::value::shortened;
-use super::{Change, Event, Signal};
+use super::{Change, Event};
 use crate::simulate::sample_of;
 use std::ops::Range;
 
@@ -25,13 +26,8 @@ pub(super) struct Placed {
 }
 
 /// Reads all events; `drafts` are the controllers as they start and end up as the events leave them.
-/// `duration` \[s\] is the length of the run, when it is known.
-pub(super) fn read(
-    root: &Table<'_>,
-    drafts: &mut [Draft],
-    duration: Option<f64>,
-    context: &Context,
-) -> Vec<Placed> {
+pub(super) fn read(root: &Table<'_>, drafts: &mut [Draft], context: &Context<'_>) -> Vec<Placed> {
+    let duration = context.duration;
     let mut tables: Vec<(Option<f64>, Table<'_>)> =
         root.tables("event").into_iter().map(|table| (read_time(&table, duration), table)).collect();
     // Stable: of two events at one time the one written first comes first.
@@ -39,7 +35,7 @@ pub(super) fn read(
     let mut events = Vec::new();
     for (at, table) in tables {
         let controller = read_controller(&table, drafts);
-        let mut changes = read_changes(&table);
+        let mut changes = read_changes(&table, context);
         if let Some(who) = concerned(&table, controller, drafts.len()) {
             changes.extend(read_parameters(&table, drafts, &who, context));
         }
@@ -51,7 +47,7 @@ pub(super) fn read(
             table.log.fault(Fault::new(code::MISSING_KEY, table.place.clone(), message).help(help));
         }
         changes.sort_by_key(|(span, _)| span.start);
-        check_not_late(&table, at, &changes, duration, context);
+        check_not_late(&table, at, &changes, context);
         table.finish();
         if let Some(at) = at {
             let (spans, changes) = changes.into_iter().unzip();
@@ -96,14 +92,9 @@ fn read_time(table: &Table<'_>, duration: Option<f64>) -> Option<f64> {
 }
 
 /// Everything but a disturbance takes effect with the next sample: there must be one.
-fn check_not_late(
-    table: &Table<'_>,
-    at: Option<f64>,
-    changes: &[PlacedChange],
-    duration: Option<f64>,
-    context: &Context,
-) {
-    let (Some(at), Some(duration), Some(ts), Some(span)) = (at, duration, context.ts, table.span("at"))
+fn check_not_late(table: &Table<'_>, at: Option<f64>, changes: &[PlacedChange], context: &Context<'_>) {
+    let (Some(at), Some(duration), Some(ts), Some(span)) =
+        (at, context.duration, context.ts, table.span("at"))
     else {
         return;
     };
@@ -154,7 +145,7 @@ fn read_parameters(
     table: &Table<'_>,
     drafts: &mut [Draft],
     who: &[usize],
-    context: &Context,
+    context: &Context<'_>,
 ) -> Option<PlacedChange> {
     let first = PARAMETER_KEYS.iter().filter_map(|key| table.key_span(key)).min_by_key(|span| span.start)?;
     let mut list = Vec::new();
@@ -169,16 +160,17 @@ fn read_parameters(
 }
 
 /// Everything but parameters.
-fn read_changes(table: &Table<'_>) -> Vec<PlacedChange> {
+fn read_changes(table: &Table<'_>, context: &Context<'_>) -> Vec<PlacedChange> {
     let mut changes: Vec<PlacedChange> = Vec::new();
     let mut add = |key: &'static str, change: Option<Change>| {
         if let (Some(span), Some(change)) = (table.span(key), change) {
             changes.push((span, change));
         }
     };
-    add("setpoint", read_setpoint(table));
-    add("disturbance", read_disturbance(table).map(Change::Disturbance));
-    add("remote_setpoint", signal(table, "remote_setpoint").map(|r| Change::RemoteSetpoint(Signal::Step(r))));
+    add("setpoint", signals::read(table, "setpoint", context).map(Change::Setpoint));
+    add("disturbance", signals::read(table, "disturbance", context).map(Change::Disturbance));
+    add("remote_setpoint", signals::read(table, "remote_setpoint", context).map(Change::RemoteSetpoint));
+    add("measurement", signals::measurement(table, context));
     add("mode", mode(table).map(Change::Mode));
     add("manual", signal(table, "manual").map(Change::Manual));
     add("track", signal(table, "track").map(Change::Track));
@@ -188,17 +180,6 @@ fn read_changes(table: &Table<'_>) -> Vec<PlacedChange> {
     add("lost_samples", read_count(table, "lost_samples").map(Change::LostSamples));
     add("acknowledge", read_acknowledge(table).then_some(Change::Acknowledge));
     changes
-}
-
-fn read_setpoint(table: &Table<'_>) -> Option<Change> {
-    if table.is_table("setpoint") {
-        let (name, span) = (table.name("setpoint"), table.key_span("setpoint")?);
-        let message = format!("`{name}` of an event is a number, the new set-point");
-        let help = "its range and rate are changed by `setpoint_limits = { ... }`";
-        table.log.fault(Fault::new(code::WRONG_TYPE, span, message).help(help));
-        return None;
-    }
-    signal(table, "setpoint").map(|r| Change::Setpoint(Signal::Step(r)))
 }
 
 fn read_count(table: &Table<'_>, key: &'static str) -> Option<u32> {
@@ -213,57 +194,4 @@ fn read_acknowledge(table: &Table<'_>) -> bool {
         table.log.fault(Fault::new(code::CONFLICT, flag.span, message).help(help));
     }
     flag.value
-}
-
-/// `disturbance = 1.0`, `{ step = 1.0 }`, `{ ramp = 0.1, duration = 5.0 }` or `{ pulse = 1.0, duration = 0.5
-/// }`.
-fn read_disturbance(table: &Table<'_>) -> Option<Signal> {
-    if !table.is_table("disturbance") {
-        return signal(table, "disturbance").map(Signal::Step);
-    }
-    let part = table.table("disturbance", "`disturbance = { step = 1.0 }`")?;
-    let kinds = ["step", "ramp", "pulse"];
-    let step = signal(&part, "step");
-    let ramp = part.number_in("ramp", Allowed::new(-1e12, 1e12, "per second"));
-    let pulse = signal(&part, "pulse");
-    let duration = part.number_in("duration", Allowed::TIME);
-    let given: Vec<&'static str> = kinds.into_iter().filter(|kind| part.span(kind).is_some()).collect();
-    let (log, place) = (part.log, part.place.clone());
-    let duration_span = part.span("duration");
-    let duration_key = part.key_span("duration");
-    part.finish();
-    let write =
-        "write `{ step = 1.0 }`, `{ ramp = 0.1, duration = 5.0 }` or `{ pulse = 1.0, duration = 0.5 }`";
-    let [kind] = given[..] else {
-        let (code, message) = match given.len() {
-            0 => (code::MISSING_KEY, "`disturbance` has none of `step`, `ramp` and `pulse`".to_owned()),
-            _ => (
-                code::CONFLICT,
-                format!("`disturbance` has `{}`; one of them is allowed", given.join("` and `")),
-            ),
-        };
-        log.fault(Fault::new(code, place, message).help(write));
-        return None;
-    };
-    let length = duration.map(|Located { value, .. }| value);
-    match kind {
-        "step" => {
-            if let Some(span) = duration_key {
-                let message = "a step has no `duration`";
-                log.fault(Fault::new(code::CONFLICT, span, message).help("a step that ends is a `pulse`"));
-            }
-            step.map(Signal::Step)
-        }
-        "ramp" => {
-            let duration = if duration_span.is_some() { length? } else { f64::INFINITY };
-            ramp.map(|slope| Signal::Ramp { slope: slope.value, duration })
-        }
-        _ => {
-            if duration_span.is_none() {
-                let message = "`disturbance.duration` is missing: a pulse has an end";
-                log.fault(Fault::new(code::MISSING_KEY, place, message).help(write));
-            }
-            Some(Signal::Pulse { height: pulse?, duration: length? })
-        }
-    }
 }

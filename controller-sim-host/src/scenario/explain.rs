@@ -15,7 +15,7 @@ pub(super) fn explain(
     error: &ConfigError,
     draft: &Draft,
     spec: &ControllerSpec,
-    context: &Context,
+    context: &Context<'_>,
     log: &Log<'_>,
 ) -> Fault {
     let setting = setting(error, draft, spec);
@@ -164,7 +164,7 @@ fn alarms_inverted(error: &ConfigError, subject: String, span: Range<usize>) -> 
     Fault::new(code::CONFLICT, span, message).help("the order is `lo_lo` < `lo` < `hi` < `hi_hi`")
 }
 
-fn needs_filter(context: &Context, subject: String, span: Range<usize>) -> Fault {
+fn needs_filter(context: &Context<'_>, subject: String, span: Range<usize>) -> Fault {
     let message = format!("{subject} needs a filter, and `tf` is 0");
     let least = context.ts.map_or(String::new(), |ts| format!(", at least {} s", show_short(0.5 * ts)));
     Fault::new(code::CONFLICT, span, message).help(format!("write `tf` in `pid`{least}"))

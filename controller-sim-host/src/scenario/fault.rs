@@ -42,6 +42,8 @@ pub mod code {
     pub const CLAMPED: &str = "clamped";
     /// Warning: a set-point outside the range of valid measurements.
     pub const OUT_OF_MEASUREMENT: &str = "out-of-measurement";
+    /// Warning: a signal that the sampling does not show as it is.
+    pub const ALIASING: &str = "aliasing";
     /// Warning: a change without any effect.
     pub const NO_EFFECT: &str = "no-effect";
 }

@@ -2,6 +2,7 @@
 #![doc = include_str!("format.md")]
 
 mod cases;
+mod columns;
 mod compensators;
 mod controllers;
 mod events;
@@ -21,9 +22,11 @@ mod places;
 mod plants;
 mod ranges;
 mod read;
+mod recording;
 mod run;
 mod sections;
 mod signal;
+mod signals;
 mod sources;
 mod suggest;
 mod surroundings;

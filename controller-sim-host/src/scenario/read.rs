@@ -164,11 +164,13 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
         latency_span: run.latency.map(|latency| latency.span),
         plant: plant.as_ref().map(|plant| plant.whole.clone()),
         precision: input.precision,
+        duration: run.duration,
+        library: input.library,
     };
     let mut drafts = read_controllers(&roots, &context);
     let controllers: Vec<_> = drafts.iter().map(Draft::spec).collect();
     let places: Vec<_> = drafts.iter().map(|draft| draft.places.clone()).collect();
-    let events = events::read(roots.of("event"), &mut drafts, run.duration, &context);
+    let events = events::read(roots.of("event"), &mut drafts, &context);
     roots.finish();
     if log.count() > 0 {
         return None;
@@ -206,7 +208,7 @@ fn refuse_sweep(own: &Table<'_>, input: &Input<'_>) {
 }
 
 /// The included controllers first, in the order of the files.
-fn read_controllers(roots: &Roots<'_>, context: &Context) -> Vec<Draft> {
+fn read_controllers(roots: &Roots<'_>, context: &Context<'_>) -> Vec<Draft> {
     let log = roots.own.log;
     if roots.all().all(|table| table.span("controller").is_none()) {
         roots.own.missing("controller", "at least one `[[controller]]`, with a `name` and a `pid`");

@@ -116,7 +116,12 @@ impl<'a> Table<'a> {
         let Some(first) = keys.first() else { return };
         let message = format!("`{}` is missing", self.name(first));
         let fault = Fault::new(code::MISSING_KEY, self.place.clone(), message);
-        self.missing.borrow_mut().push((keys.to_vec(), fault.help(format!("write {example}"))));
+        self.missing_fault(keys, fault.help(format!("write {example}")));
+    }
+
+    /// A fault that [`finish`](Self::finish) reports unless an unknown key was meant to be one of `keys`.
+    pub(super) fn missing_fault(&self, keys: &[&'static str], fault: Fault) {
+        self.missing.borrow_mut().push((keys.to_vec(), fault));
     }
 
     /// Reports that a value, that of `key` or one in it, is of the wrong type.
@@ -356,6 +361,11 @@ impl<'a> Table<'a> {
 
     /// Reports every key that was not asked for, and every one that is missing.
     pub(super) fn finish(self) {
+        self.finish_here();
+    }
+
+    /// As [`finish`](Self::finish), for one who holds the table for somebody else.
+    pub(super) fn finish_here(&self) {
         let asked = self.asked.borrow();
         for (key, span, _) in self.written() {
             if asked.contains(&key) {

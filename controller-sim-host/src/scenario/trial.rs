@@ -4,6 +4,7 @@ use super::ControllerSpec;
 use super::controllers::Draft;
 use super::explain::explain;
 use super::fault::{Fault, code};
+use super::library::Library;
 use super::log::Log;
 use super::number::show_short;
 use crate::simulate::Precision;
@@ -18,7 +19,7 @@ pub(super) const LONGEST_DELAY: f64 = 1e7;
 
 /// What a controller is built for.
 #[derive(Debug, Clone)]
-pub(super) struct Context {
+pub(super) struct Context<'a> {
     /// Sampling period \[s\]; none when the text has no usable one.
     pub(super) ts: Option<f64>,
     /// Where the sampling period is written.
@@ -31,6 +32,10 @@ pub(super) struct Context {
     pub(super) plant: Option<TransferFunction>,
     /// The number type of the run.
     pub(super) precision: Precision,
+    /// Length of the run \[s\], when it is known.
+    pub(super) duration: Option<f64>,
+    /// The files there are.
+    pub(super) library: &'a Library<'a>,
 }
 
 /// Parameters whose range depends on the sampling period.
@@ -48,7 +53,7 @@ const OF_THE_PERIOD: [Param; 9] = [
 
 /// Reports everything that keeps `draft` from being built, and what is odd about it. `faults_before` is the
 /// number of faults before the draft was read.
-pub(super) fn check(draft: &Draft, context: &Context, log: &Log<'_>, faults_before: usize) {
+pub(super) fn check(draft: &Draft, context: &Context<'_>, log: &Log<'_>, faults_before: usize) {
     let spec = draft.spec();
     let too_long = delay_is_too_long(draft, &spec, context, log);
     let in_double = faults::<f64>(&spec, context);
@@ -80,7 +85,7 @@ pub(super) fn check(draft: &Draft, context: &Context, log: &Log<'_>, faults_befo
 }
 
 /// Every fault of a law for `spec` in `T`.
-fn faults<T: Real>(spec: &ControllerSpec, context: &Context) -> Vec<ConfigError> {
+fn faults<T: Real>(spec: &ControllerSpec, context: &Context<'_>) -> Vec<ConfigError> {
     // As in a run: what runs in T is told its numbers in T.
     let round = |x: f64| T::from_f64(x).to_f64();
     let ts = round(context.ts.unwrap_or(1.0));
@@ -126,7 +131,7 @@ fn related_to(fault: &ConfigError) -> Vec<Param> {
 }
 
 /// The delay line of a compensator is memory: its length has a limit of its own.
-fn delay_is_too_long(draft: &Draft, spec: &ControllerSpec, context: &Context, log: &Log<'_>) -> bool {
+fn delay_is_too_long(draft: &Draft, spec: &ControllerSpec, context: &Context<'_>, log: &Log<'_>) -> bool {
     let (Some(ts), Some(compensator)) = (context.ts, spec.compensator_config(context.latency)) else {
         return false;
     };
@@ -152,7 +157,7 @@ pub(super) fn delay_fault(what: &str, samples: f64, span: Range<usize>) -> Fault
 }
 
 /// What can be built and is odd all the same.
-fn warn(draft: &Draft, spec: &ControllerSpec, context: &Context, log: &Log<'_>) {
+fn warn(draft: &Draft, spec: &ControllerSpec, context: &Context<'_>, log: &Log<'_>) {
     let place = |param| draft.places.of(param).map_or(draft.places.whole.clone(), |s| s.span.clone());
     let pid = &spec.config.pid;
     if let Some(ts) = context.ts
