@@ -8,7 +8,7 @@ use controller_sim_host::simulate::Precision;
 const TEXTS: [&str; 4] = [
     demo::SCENARIO,
     include_str!("../scenarios/windup.toml"),
-    include_str!("../scenarios/sensor_failure.toml"),
+    include_str!("../scenarios/sensor.toml"),
     include_str!("data/base.toml"),
 ];
 

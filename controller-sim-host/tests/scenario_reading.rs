@@ -180,7 +180,7 @@ fn the_examples_have_no_faults_and_no_warnings() {
         ("demo", demo::SCENARIO),
         ("first", include_str!("../scenarios/first.toml")),
         ("windup", include_str!("../scenarios/windup.toml")),
-        ("sensor_failure", include_str!("../scenarios/sensor_failure.toml")),
+        ("sensor", include_str!("../scenarios/sensor.toml")),
     ] {
         for precision in [Precision::F32, Precision::F64] {
             let read = read(text, precision).unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
