@@ -51,6 +51,28 @@ export function narrow(page) {
   );
 }
 
+/** Labels in pictures that are written over each other. */
+export function overlaps(page) {
+  return page.evaluate(() => {
+    const shown = (e) => e.checkVisibility({ visibilityProperty: true }) && e.textContent.trim() !== '';
+    // The box of a text has room for accents and descenders: letters meet only when boxes overlap by more than that.
+    const boxes = [...document.querySelectorAll('svg text')].filter(shown).map((e) => {
+      const { left, right, top, bottom } = e.getBoundingClientRect();
+      const slack = 0.15 * (bottom - top);
+      return { words: e.textContent.trim(), left: left + 1, right: right - 1, top: top + slack, bottom: bottom - slack };
+    });
+    const faults = [];
+    boxes.forEach((a, at) => {
+      for (const b of boxes.slice(at + 1)) {
+        if (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom) {
+          faults.push({ kind: 'overlap', text: `"${a.words.slice(0, 40)}" and "${b.words.slice(0, 40)}"` });
+        }
+      }
+    });
+    return faults;
+  });
+}
+
 /** The faults of a page in print; `paper` is the room on a sheet [CSS px]. Writes the document to `pdf`, if given. */
 export async function print(page, paper, pdf) {
   const { faults, height } = await page.evaluate((sheet) => {

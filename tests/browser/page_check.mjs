@@ -3,7 +3,7 @@
 import path from 'node:path';
 import { accessibility } from './accessibility.mjs';
 import { A4, open, VARIANTS } from './browser.mjs';
-import { narrow, print, references } from './layout.mjs';
+import { narrow, overlaps, print, references } from './layout.mjs';
 
 /**
  * Opens `file` in every variant, or in those of `only`, and gives its faults, each with the variants it was seen in.
@@ -16,7 +16,7 @@ export async function checkPage({ browser, axe }, file, { shots, only } = {}) {
   for (const variant of only ?? Object.keys(VARIANTS)) {
     const { context, page, faults: seen } = await open(browser, file, variant);
     try {
-      const found = [...(await references(page))];
+      const found = [...(await references(page)), ...(await overlaps(page))];
       if (variant === 'light') {
         facts.load = await page.evaluate(() => performance.getEntriesByType('navigation')[0].duration);
       }

@@ -77,6 +77,7 @@ const BROKEN = [
   ['too-wide', 'overflow', 'narrow', body('<div style="width: 600px">wide</div>')],
   ['small-letters', 'small-text', 'narrow', ['0 0 400 200', '0 0 600 300']],
   ['cut-label', 'cut-text', 'narrow', ['x="10"', 'x="-30"']],
+  ['labels-collide', 'overlap', 'light', ['<path', '<text x="20" y="22">other</text><path']],
   ['small-chart', 'narrow-chart', 'narrow', ['M40 180 L390 40', 'M40 180 L200 40']],
   ['no-figure', 'figure', 'narrow', [/<(\/?)figure>/g, '<$1div>']],
   ['divided-figure', 'cut-figure', 'print', ['break-inside: avoid', '']],
