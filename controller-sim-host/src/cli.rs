@@ -1,20 +1,24 @@
 //! The command line: arguments, exit codes, what goes to which stream.
 
 mod arguments;
+mod examples;
+mod execute;
+mod gallery;
 mod input;
+mod interrupt;
+mod outputs;
+mod pages;
+mod progress;
+mod quoting;
+mod run;
+mod scenarios;
 mod usage;
 
-use crate::demo;
-use crate::output::{
-    FileTarget, Problem, Severity, Source, error_json, is_same_file, render, run_json, run_table, write_csv,
-};
-use crate::scenario::{Fault, Read, Scenario, read};
-use crate::simulate::{Precision, RunOptions, RunResult, run};
-use arguments::{Arguments, Command, DemoArguments, RunArguments};
+use crate::output::{Problem, Trouble, error_json, render_all};
+use arguments::{Arguments, Command, DemoArguments};
 use clap::Parser;
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
 use std::process::ExitCode;
 
 /// Exit code of bad input: arguments, files, scenarios.
@@ -23,27 +27,49 @@ pub const EXIT_INPUT: u8 = 2;
 pub const EXIT_REFUSED: u8 = 3;
 /// Exit code of everything else.
 pub const EXIT_INTERNAL: u8 = 1;
-
-/// Most samples that are kept for a CSV file: about 2 GB of memory.
-const MOST_KEPT: f64 = 2e7;
+/// Exit code of a run that was stopped from outside: that of a shell for Ctrl-C.
+pub const EXIT_STOPPED: u8 = 130;
 
 /// Why the program ends without a result.
-enum Failure {
-    /// Faults of a scenario: its name, its text, the faults.
-    Scenario(String, String, Vec<Fault>),
-    /// Anything else, with the exit code.
-    Other(Problem, u8),
+struct Failure {
+    troubles: Vec<Trouble>,
+    code: u8,
+}
+
+impl Failure {
+    /// Mistakes of whoever called the program.
+    fn input(troubles: Vec<Trouble>) -> Self {
+        Self { troubles, code: EXIT_INPUT }
+    }
+
+    /// A well-formed input without a result.
+    fn refused(problem: Problem) -> Self {
+        Self { troubles: vec![problem.into()], code: EXIT_REFUSED }
+    }
+
+    /// Something that is in nobody's hand, such as a disc that is full.
+    fn internal(problem: Problem) -> Self {
+        Self { troubles: vec![problem.into()], code: EXIT_INTERNAL }
+    }
+
+    /// Somebody wanted it to end.
+    fn stopped() -> Self {
+        Self {
+            troubles: vec![Problem::new("stopped", "stopped; nothing was written").into()],
+            code: EXIT_STOPPED,
+        }
+    }
 }
 
 impl From<Problem> for Failure {
     fn from(problem: Problem) -> Self {
-        Self::Other(problem, EXIT_INPUT)
+        Self::input(vec![problem.into()])
     }
 }
 
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
-        Self::Other(Problem::new("output", format!("cannot write the result: {error}")), EXIT_INTERNAL)
+        Self::internal(Problem::new("output", format!("cannot write the result: {error}")))
     }
 }
 
@@ -55,16 +81,14 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return wrong(&error, list.iter().any(|a| a == "--json")),
     };
-    let json = arguments.json
-        || match &arguments.command {
-            None => false,
-            Some(Command::Run(run)) => run.json,
-            Some(Command::Demo(demo)) => demo.json,
-        };
+    let (json, command) = (arguments.json, quoting::command_line(&list));
     let done = match arguments.command {
-        None => run_demo(&DemoArguments { json, ..DemoArguments::default() }),
-        Some(Command::Demo(arguments)) => run_demo(&DemoArguments { json, ..arguments }),
-        Some(Command::Run(arguments)) => run_file(&RunArguments { json, ..arguments }),
+        None => gallery::run(&DemoArguments::default(), json, &command),
+        Some(Command::Demo(arguments)) => gallery::run(&arguments, json, &command),
+        Some(Command::Run(arguments)) => run::run(&arguments, json, &command),
+        Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
+        Some(Command::Man(arguments)) => pages::man(&arguments, json),
+        Some(Command::Schema) => pages::schema(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -75,8 +99,8 @@ pub fn main() -> ExitCode {
 /// Help and version are no mistakes; everything else is, and goes to where the caller looks for it.
 fn wrong(error: &clap::Error, json: bool) -> ExitCode {
     match (usage::better(error), json && error.use_stderr()) {
-        (Some(problem), json) => return report(&Failure::Other(problem, EXIT_INPUT), json),
-        (None, true) => return report(&Failure::Other(usage::plain(error), EXIT_INPUT), true),
+        (Some(problem), json) => return report(&problem.into(), json),
+        (None, true) => return report(&usage::plain(error).into(), true),
         (None, false) => {}
     }
     // Nothing to be done when even this cannot be printed.
@@ -85,25 +109,19 @@ fn wrong(error: &clap::Error, json: bool) -> ExitCode {
 }
 
 fn report(failure: &Failure, json: bool) -> ExitCode {
-    let none = Problem::new("scenario", "");
-    let (problem, text, faults, code) = match failure {
-        Failure::Scenario(_, text, faults) => (&none, &**text, &**faults, EXIT_INPUT),
-        Failure::Other(problem, code) => (problem, "", &[][..], *code),
-    };
     let printed = if json {
-        print(&format!("{}\n", error_json(problem, text, faults)))
+        print(&error_json(&failure.troubles))
     } else {
-        let message = match failure {
-            Failure::Scenario(name, text, faults) => {
-                render(Source { name, text }, faults, Severity::Error, colours())
-            }
-            Failure::Other(problem, _) => format!("{problem}\n"),
+        let message = match (failure.code, &*failure.troubles) {
+            // No mistake of anybody.
+            (EXIT_STOPPED, [Trouble::Problem(problem)]) => format!("{}\n", problem.message),
+            (_, troubles) => render_all(troubles, colours()),
         };
         io::stderr().write_all(message.as_bytes())
     };
     // The exit code says it even when the message cannot be delivered.
     drop(printed);
-    ExitCode::from(code)
+    ExitCode::from(failure.code)
 }
 
 /// Colours only for people: on a terminal, and not when `NO_COLOR` is set.
@@ -118,98 +136,4 @@ fn print(text: &str) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other,
     }
-}
-
-fn run_demo(arguments: &DemoArguments) -> Result<(), Failure> {
-    if let Some(path) = &arguments.save {
-        let saved = demo::save(path, arguments.force)?;
-        let name = saved.display();
-        return Ok(print(&if arguments.json {
-            format!("{}\n", serde_json::json!({ "saved": name.to_string() }))
-        } else {
-            format!("wrote {name}; run it with: controller-sim run {name}\n")
-        })?);
-    }
-    let source = Source { name: demo::NAME, text: demo::SCENARIO };
-    let precision = arguments.precision.into();
-    let Read { scenario, warnings } = read_scenario(source, precision)?;
-    let result = simulate(&scenario, RunOptions { precision, trace: false, ..RunOptions::default() })?;
-    show(source, &scenario, precision, &result, &warnings, arguments.json)?;
-    if !arguments.json {
-        print(demo::TRY_NEXT)?;
-    }
-    Ok(())
-}
-
-fn run_file(arguments: &RunArguments) -> Result<(), Failure> {
-    let precision: Precision = arguments.precision.into();
-    let (name, text) = input::read(&arguments.scenario)?;
-    let source = Source { name: &name, text: &text };
-    let Read { mut scenario, warnings } = read_scenario(source, precision)?;
-    if let Some(substeps) = arguments.substeps {
-        scenario.substeps = usize::from(substeps);
-    }
-    let csv = match &arguments.csv {
-        Some(path) => Some(csv_target(path, arguments, &scenario)?),
-        None => None,
-    };
-    let result =
-        simulate(&scenario, RunOptions { precision, trace: csv.is_some(), ..RunOptions::default() })?;
-    if let Some(csv) = &csv {
-        csv.write(|to| write_csv(&result, to)).map_err(|problem| Failure::Other(problem, EXIT_INTERNAL))?;
-    }
-    show(source, &scenario, precision, &result, &warnings, arguments.json)?;
-    if let (Some(csv), false) = (&csv, arguments.json) {
-        let samples: usize = result.controllers.iter().map(|c| c.trace.len()).sum();
-        print(&format!("\nwrote {}: {samples} samples\n", csv.path().display()))?;
-    }
-    Ok(())
-}
-
-/// Everything that can be wrong with the CSV file is found before the run, not after it.
-fn csv_target(path: &Path, arguments: &RunArguments, scenario: &Scenario) -> Result<FileTarget, Failure> {
-    if path.as_os_str() == "-" {
-        let problem = Problem::new("file", "`--csv -` is not possible: the standard output has the table");
-        return Err(problem.help("give a file: `--csv my.csv`").into());
-    }
-    let from =
-        if arguments.scenario.as_os_str() == "-" { Path::new("/dev/stdin") } else { &arguments.scenario };
-    if is_same_file(path, from) {
-        let message = format!("`{}` is the scenario itself and is not overwritten", path.display());
-        return Err(Problem::new("file", message).help("give the CSV file another name").into());
-    }
-    #[allow(clippy::cast_precision_loss)] // a bound
-    let samples = scenario.duration / scenario.ts * scenario.controllers.len() as f64;
-    if samples > MOST_KEPT {
-        let message =
-            format!("{samples:.3e} samples are too many for a CSV file; allowed: at most {MOST_KEPT:e}");
-        let problem = Problem::new("too-large", message);
-        return Err(problem.help("shorten the run, or leave `--csv` out: the metrics need no memory").into());
-    }
-    Ok(FileTarget::new(path, arguments.force)?)
-}
-
-fn read_scenario(source: Source<'_>, precision: Precision) -> Result<Read, Failure> {
-    read(source.text, precision)
-        .map_err(|faults| Failure::Scenario(source.name.to_owned(), source.text.to_owned(), faults))
-}
-
-fn simulate(scenario: &Scenario, options: RunOptions) -> Result<RunResult, Failure> {
-    run(scenario, options)
-        .map_err(|error| Failure::Other(Problem::new("refused", error.to_string()), EXIT_REFUSED))
-}
-
-fn show(
-    source: Source<'_>,
-    scenario: &Scenario,
-    precision: Precision,
-    result: &RunResult,
-    warnings: &[Fault],
-    json: bool,
-) -> Result<(), Failure> {
-    if json {
-        return Ok(print(&format!("{}\n", run_json(source, scenario, precision, result, warnings)))?);
-    }
-    io::stderr().write_all(render(source, warnings, Severity::Warning, colours()).as_bytes())?;
-    Ok(print(&run_table(scenario, precision, result))?)
 }

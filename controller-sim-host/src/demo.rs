@@ -1,9 +1,12 @@
-//! The built-in scenario: what the program shows when it is started without arguments.
+//! The built-in scenarios: what the program shows when it is started without arguments, and a gallery.
+
+mod files;
 
 use crate::output::{FileError, FileTarget};
+use crate::scenario::{Files, closest};
 use std::path::{Path, PathBuf};
 
-/// The text of the built-in scenario, `scenarios/demo.toml`.
+/// The text of the first built-in scenario, `scenarios/demo.toml`.
 pub const SCENARIO: &str = include_str!("../scenarios/demo.toml");
 
 /// What it is called in messages and results.
@@ -12,18 +15,155 @@ pub const NAME: &str = "demo";
 /// What to do after the demo.
 pub const TRY_NEXT: &str = "
 Try next (in the source tree write `cargo sim` for `controller-sim`):
+  controller-sim demo --report demo.html      the same with plots, as a page for the browser
+  controller-sim demo --list                  what else is built in
   controller-sim demo --save my.toml          write this scenario to a file, to change it
   controller-sim run my.toml --csv my.csv     run it and keep every sample
   controller-sim run --help                   everything else, with examples
 ";
 
-/// Writes the built-in scenario to `path`, or to the next free name when that exists and `force` is not
-/// given. Gives the path that was written.
+/// A built-in scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BuiltIn {
+    /// Its file below `scenarios/`.
+    pub path: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+impl BuiltIn {
+    /// What it is called: the name of its file without folder and ending.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let file = self.path.rsplit_once('/').map_or(self.path, |(_, file)| file);
+        file.strip_suffix(".toml").unwrap_or(file)
+    }
+
+    /// What it shows: its `title`, or the first line of its text when it has none.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let title = toml::de::DeTable::parse(self.text).ok().and_then(|table| {
+            let title = table.get_ref().get("title")?.get_ref().as_str()?.to_owned();
+            Some(title)
+        });
+        title.unwrap_or_else(|| {
+            self.text.lines().next().unwrap_or("").trim_start_matches(['#', ' ']).to_owned()
+        })
+    }
+
+    /// The files that it may name: those beside it.
+    #[must_use]
+    pub fn files(&self) -> impl Files + use<> {
+        Beside(self.path.rsplit_once('/').map_or("", |(folder, _)| folder))
+    }
+}
+
+/// The built-in files of a folder below `scenarios/`.
+struct Beside(&'static str);
+
+impl Files for Beside {
+    fn load(&self, path: &str) -> Result<String, String> {
+        let mut parts: Vec<&str> = self.0.split('/').filter(|part| !part.is_empty()).collect();
+        for part in path.split('/') {
+            match part {
+                "." | "" => {}
+                ".." => drop(parts.pop()),
+                name => parts.push(name),
+            }
+        }
+        let full = parts.join("/");
+        let found = files::ALL.iter().find(|(name, _)| *name == full);
+        found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| format!("there is no built-in file `{path}`"))
+    }
+}
+
+/// Every built-in scenario, those for learning first, then the figures of the papers.
+pub fn all() -> impl Iterator<Item = BuiltIn> {
+    let scenarios = files::ALL.iter().filter(|(path, _)| path.ends_with(".toml"));
+    scenarios.map(|&(path, text)| BuiltIn { path, text })
+}
+
+/// The built-in scenario `name`, or all of them, in order, whose names begin with `name-`. Folder and ending may be
+/// written.
+///
+/// # Errors
+/// The name that was probably meant, when nothing is called so.
+pub fn named(name: &str) -> Result<Vec<BuiltIn>, Option<&'static str>> {
+    let file = name.strip_suffix(".toml").unwrap_or(name);
+    let wanted = file.rsplit_once('/').map_or(file, |(_, file)| file);
+    if let Some(one) = all().find(|one| one.name() == wanted) {
+        return Ok(vec![one]);
+    }
+    let begins = |one: &BuiltIn| one.name().strip_prefix(wanted).is_some_and(|rest| rest.starts_with('-'));
+    let group: Vec<BuiltIn> = all().filter(begins).collect();
+    if wanted.is_empty() || group.is_empty() {
+        let names: Vec<&'static str> = all().map(|one| one.name()).collect();
+        return Err(closest(wanted, &names));
+    }
+    Ok(group)
+}
+
+/// Writes a text to `path`, or to the next free name when that exists and `force` is not given. Gives the path that was
+/// written.
 ///
 /// # Errors
 /// A file that cannot be written; a path that is no file.
-pub fn save(path: &Path, force: bool) -> Result<PathBuf, FileError> {
+pub fn save(text: &str, path: &Path, force: bool) -> Result<PathBuf, FileError> {
     let target = FileTarget::next_free(path, force)?;
-    target.write(|to| to.write_all(SCENARIO.as_bytes()))?;
+    target.write(|to| to.write_all(text.as_bytes()))?;
     Ok(target.path().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+    use std::fs;
+
+    /// Every file below `folder` with its path from there.
+    fn on_disc(folder: &Path, before: &str, list: &mut BTreeMap<String, String>) {
+        for entry in fs::read_dir(folder).expect("readable") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().expect("a name").to_string_lossy();
+            if path.is_dir() {
+                on_disc(&path, &format!("{before}{name}/"), list);
+            } else {
+                list.insert(format!("{before}{name}"), fs::read_to_string(&path).expect("a text"));
+            }
+        }
+    }
+
+    #[test]
+    fn every_file_of_the_folder_is_built_in() {
+        let mut expected = BTreeMap::new();
+        on_disc(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios"), "", &mut expected);
+        let built_in: BTreeMap<String, String> =
+            files::ALL.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())).collect();
+        assert_eq!(
+            built_in.keys().collect::<Vec<_>>(),
+            expected.keys().collect::<Vec<_>>(),
+            "see src/demo/files.rs"
+        );
+        assert_eq!(built_in, expected);
+        assert_eq!(files::ALL.len(), built_in.len(), "each once");
+    }
+
+    #[test]
+    fn names_are_unique_and_every_scenario_has_a_title() {
+        let names: Vec<&str> = all().map(|one| one.name()).collect();
+        assert_eq!(names.first(), Some(&NAME));
+        for (i, one) in all().enumerate() {
+            assert_eq!(names.iter().filter(|name| **name == one.name()).count(), 1, "{}", one.name());
+            assert!(!one.title().is_empty() && one.title().chars().count() <= 120, "{i}: {}", one.title());
+        }
+    }
+
+    #[test]
+    fn a_name_is_exact_or_the_beginning_of_several() {
+        let names = |name: &str| named(name).map(|list| list.iter().map(BuiltIn::name).collect::<Vec<_>>());
+        assert_eq!(names("demo"), Ok(vec!["demo"]));
+        assert_eq!(names("scenarios/windup.toml"), Ok(vec!["windup"]));
+        assert_eq!(names("wind-up"), Err(Some("windup")));
+        assert_eq!((names(""), names("wind")), (Err(None), Err(Some("windup"))));
+    }
 }

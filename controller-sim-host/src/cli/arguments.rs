@@ -1,40 +1,16 @@
 //! The arguments of the program.
 
+use super::examples;
 use crate::simulate::Precision;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
-
-const EXAMPLES: &str = "\
-Examples:
-  controller-sim                                  run the built-in scenario
-  controller-sim demo --save my.toml              write it to a file, to change it
-  controller-sim run my.toml                      run a scenario and compare its controllers
-  controller-sim run my.toml --precision f32      as the target computes
-  controller-sim run my.toml --json               for a program
-
-In the source tree write `cargo sim` for `controller-sim`.
-
-Exit codes: 0 done, 2 bad input, 3 refused, 1 anything else.";
-
-const RUN_EXAMPLES: &str = "\
-Examples:
-  controller-sim run my.toml
-  controller-sim run my.toml --precision f32 --csv my.csv
-  controller-sim run my.toml --csv my.csv --force     replace my.csv
-  cat my.toml | controller-sim run - --json";
-
-const DEMO_EXAMPLES: &str = "\
-Examples:
-  controller-sim demo                         run it
-  controller-sim demo --save                  write it to demo.toml, or demo-2.toml, ...
-  controller-sim demo --save my.toml --force  write it to my.toml, whatever was there";
 
 /// Runs the controllers that are flashed against an exactly simulated plant.
 #[derive(Debug, Parser)]
-#[command(name = "controller-sim", version, after_help = EXAMPLES)]
+#[command(name = "controller-sim", version, after_help = examples::PROGRAM)]
 pub(super) struct Arguments {
-    /// Print one JSON object instead of tables
-    #[arg(long)]
+    /// Print one JSON object instead of tables and texts; `controller-sim schema` describes it
+    #[arg(long, global = true)]
     pub(super) json: bool,
     #[command(subcommand)]
     pub(super) command: Option<Command>,
@@ -42,49 +18,142 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Runs a scenario and compares its controllers
+    /// Runs scenarios and compares their controllers
     Run(RunArguments),
-    /// Runs the built-in scenario, or writes it to a file
+    /// Runs a built-in scenario, lists them, or writes one to a file
     Demo(DemoArguments),
+    /// Prints the completions for a shell
+    Completions(CompletionsArguments),
+    /// Prints the manual page
+    Man(ManArguments),
+    /// Prints the JSON schema of everything that `--json` prints
+    #[command(after_help = examples::SCHEMA)]
+    Schema,
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = RUN_EXAMPLES)]
+#[command(after_help = examples::RUN, groups = groups())]
 pub(super) struct RunArguments {
-    /// The scenario, a TOML file; `-` reads it from the standard input
-    pub(super) scenario: PathBuf,
-    /// Print one JSON object instead of tables
-    #[arg(long)]
-    pub(super) json: bool,
-    /// Write every sample of every controller to this file
-    #[arg(long, value_name = "FILE")]
-    pub(super) csv: Option<PathBuf>,
-    /// Number type of the controllers
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) precision: Number,
-    /// Replace the CSV file if it exists
-    #[arg(long, requires = "csv")]
-    pub(super) force: bool,
-    /// Steps between two samples for the metrics, 1 to 1000; overrides the scenario
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
-    pub(super) substeps: Option<u16>,
+    /// The scenarios, TOML files; `-` reads one from the standard input
+    #[arg(required = true, value_name = "FILES", value_hint = ValueHint::FilePath)]
+    pub(super) scenarios: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(super) options: Options,
 }
 
 #[derive(Debug, Default, Args)]
-#[command(after_help = DEMO_EXAMPLES)]
+#[command(after_help = examples::DEMO, groups = groups())]
 pub(super) struct DemoArguments {
+    /// A built-in scenario, or the beginning of several names
+    pub(super) name: Option<String>,
+    /// Lists the built-in scenarios
+    #[arg(long, conflicts_with_all = ["name", "files", "set"])]
+    pub(super) list: bool,
     /// Write the scenario to this file instead of running it; takes the next free name if it exists
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "demo.toml")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        num_args = 0..=1,
+        default_missing_value = "demo.toml",
+        group = "files",
+        conflicts_with_all = ["report", "svg", "csv", "parquet", "set"],
+        value_hint = ValueHint::FilePath
+    )]
     pub(super) save: Option<PathBuf>,
-    /// Print one JSON object instead of tables
-    #[arg(long)]
-    pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) options: Options,
+}
+
+/// What is common to everything that runs.
+#[derive(Debug, Default, Args)]
+pub(super) struct Options {
+    /// Write a page with plots, tables and parameters to this file, for the browser
+    #[arg(long, value_name = "FILE", groups = ["files", "pictures"], value_hint = ValueHint::FilePath)]
+    pub(super) report: Option<PathBuf>,
+    /// Write the plots to this file; NAME-1.svg, NAME-2.svg, ... when there are several runs
+    #[arg(long, value_name = "FILE", groups = ["files", "pictures"], value_hint = ValueHint::FilePath)]
+    pub(super) svg: Option<PathBuf>,
+    /// Write every sample of every controller to this file
+    #[arg(long, value_name = "FILE", group = "files", value_hint = ValueHint::FilePath)]
+    pub(super) csv: Option<PathBuf>,
+    /// Write every sample of every controller to this Parquet file
+    #[arg(long, value_name = "FILE", group = "files", value_hint = ValueHint::FilePath)]
+    pub(super) parquet: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long, requires = "files")]
+    pub(super) force: bool,
     /// Number type of the controllers
     #[arg(long, value_enum, default_value_t)]
     pub(super) precision: Number,
-    /// Replace the file if it exists
-    #[arg(long, requires = "save")]
+    /// Steps between two samples for the metrics, 1 to 1000; overrides the scenario
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub(super) substeps: Option<u16>,
+    /// Change a value of the scenario, for example `noise.std=0.1`; may be given more than once
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    pub(super) set: Vec<(String, String)>,
+    /// The plots begin at this time in seconds
+    #[arg(long, value_name = "T", value_parser = time, requires = "pictures")]
+    pub(super) from: Option<f64>,
+    /// The plots end at this time in seconds
+    #[arg(long, value_name = "T", value_parser = time, requires = "pictures")]
+    pub(super) to: Option<f64>,
+    /// Runs at a time; all processors if not given. The results are the same
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(super) threads: Option<u16>,
+    /// No progress, and no line about the files that were written
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = examples::COMPLETIONS)]
+pub(super) struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum)]
+    pub(super) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = examples::MAN)]
+pub(super) struct ManArguments {
+    /// Write one page for each command to this folder
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(super) dir: Option<PathBuf>,
+    /// Replace pages that exist
+    #[arg(long, requires = "dir")]
     pub(super) force: bool,
+}
+
+/// The options that write files, of which `--force` needs one, and those of them that draw: any number of each.
+fn groups() -> [ArgGroup; 2] {
+    ["files", "pictures"].map(|name| ArgGroup::new(name).multiple(true))
+}
+
+fn key_and_value(text: &str) -> Result<(String, String), String> {
+    // A `=` in quotes belongs to a name.
+    let mut quote = None;
+    let split = text.find(|c| {
+        match quote {
+            None if c == '=' => return true,
+            None if matches!(c, '"' | '\'') => quote = Some(c),
+            Some(open) if c == open => quote = None,
+            _ => {}
+        }
+        false
+    });
+    let parts =
+        split.and_then(|at| text.split_at_checked(at)).map(|(key, value)| (key.trim(), value[1..].trim()));
+    match parts {
+        Some((key, value)) if !key.is_empty() && !value.is_empty() => Ok((key.to_owned(), value.to_owned())),
+        _ => Err("write KEY=VALUE, for example `noise.std=0.1`".to_owned()),
+    }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(t) if t.is_finite() && t >= 0.0 => Ok(t),
+        _ => Err("write a time in seconds, 0 or above, for example `2.5`".to_owned()),
+    }
 }
 
 /// A number type by its Rust name.
@@ -102,6 +171,28 @@ impl From<Number> for Precision {
         match number {
             Number::F32 => Self::F32,
             Number::F64 => Self::F64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_do_not_contradict_each_other() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn a_key_ends_at_the_first_sign_outside_quotes() {
+        let pair = |key: &str, value: &str| Ok((key.to_owned(), value.to_owned()));
+        assert_eq!(key_and_value(" noise.std = 1 "), pair("noise.std", "1"));
+        assert_eq!(key_and_value("controller.\"a=b\".pid.kp=2"), pair("controller.\"a=b\".pid.kp", "2"));
+        assert_eq!(key_and_value("title='a=b'"), pair("title", "'a=b'"));
+        for wrong in ["", "a", "=1", "a=", " = "] {
+            assert!(key_and_value(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Wrong arguments, and what was probably meant by them.
 
+use super::quoting::quoted;
 use crate::output::Problem;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::path::Path;
@@ -17,19 +18,15 @@ pub(super) fn better(error: &clap::Error) -> Option<Problem> {
     let Some(ContextValue::String(word)) = error.get(unknown) else { return None };
     if LATER.contains(&&**word) {
         let message = format!("the command `{word}` is not in this version");
-        return Some(Problem::new("usage", message).help("the commands are `run` and `demo`"));
+        return Some(
+            Problem::new("usage", message).help("the main one is `run`; `controller-sim --help` shows all"),
+        );
     }
     let is_scenario = word == "-" || word.ends_with(".toml") || Path::new(word).is_file();
     is_scenario.then(|| {
         let message = format!("`{word}` is no command");
         Problem::new("usage", message).help(format!("to run a scenario: controller-sim run {}", quoted(word)))
     })
-}
-
-/// A word as a shell takes it whole.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./+,:@".contains(c);
-    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 /// The parser's own words in one line.

@@ -1,33 +1,96 @@
 //! Every sample of every controller as CSV.
 
-use crate::simulate::RunResult;
+use crate::simulate::Sample;
+use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Writes `controller,t,r,y,u,u_f,d_hat,d,mode,status`, one line per sample, controllers one after the other.
-/// Numbers in SI units with all their digits; a measurement that is bad is `NaN`; `status` is the number of
-/// its bits.
-///
-/// # Errors
-/// Whatever the writer cannot do.
-pub fn write_csv(result: &RunResult, to: &mut dyn Write) -> io::Result<()> {
-    writeln!(to, "controller,t,r,y,u,u_f,d_hat,d,mode,status")?;
-    for controller in &result.controllers {
-        let name = field(&controller.name);
-        for s in &controller.trace {
-            let (mode, status) = (s.mode.name(), s.status.bits());
-            writeln!(
-                to,
-                "{name},{},{},{},{},{},{},{},{mode},{status}",
-                s.t, s.r, s.y, s.u, s.u_f, s.d_hat, s.d
-            )?;
-        }
-    }
-    Ok(())
+/// Numbers of a line.
+const NUMBERS: usize = 8;
+
+/// Writes samples as lines as they come: `controller,t,r,y,u,applied,u_f,d_hat,d,mode,status`, and before these
+/// `scenario,case` when the file holds several chapters. Numbers in SI units with all their digits; a measurement that
+/// is bad is `NaN`; `status` is the number of its bits. Needs no memory that grows with the run.
+#[derive(Debug)]
+pub struct CsvWriter<W> {
+    to: W,
+    several: bool,
+    /// The fields of the chapter, with the comma after them.
+    chapter: String,
+    /// The fields in front of the numbers.
+    front: String,
+    line: String,
+    cells: [Cell; NUMBERS],
 }
 
-/// A text as a CSV field: in quotes when it has a comma, a quote or a space at an end.
+/// A number as text. Many signals stand still for long: their digits are found once.
+#[derive(Debug, Default)]
+struct Cell {
+    bits: u64,
+    text: String,
+}
+
+impl Cell {
+    fn set(&mut self, x: f64) -> &str {
+        if self.text.is_empty() || self.bits != x.to_bits() {
+            self.bits = x.to_bits();
+            self.text.clear();
+            // Writing to a string does not fail.
+            let _ = write!(self.text, "{x}");
+        }
+        &self.text
+    }
+}
+
+impl<W: Write> CsvWriter<W> {
+    /// Begins a file with the names of its columns.
+    ///
+    /// # Errors
+    /// Whatever the writer cannot do.
+    pub fn new(mut to: W, several: bool) -> io::Result<Self> {
+        let front = if several { "scenario,case," } else { "" };
+        writeln!(to, "{front}controller,t,r,y,u,applied,u_f,d_hat,d,mode,status")?;
+        let (chapter, front, line) = (String::new(), String::new(), String::new());
+        Ok(Self { to, several, chapter, front, line, cells: Default::default() })
+    }
+
+    /// The samples of this scenario and case follow.
+    pub fn chapter(&mut self, scenario: &str, case: Option<&str>) {
+        if self.several {
+            self.chapter = format!("{},{},", field(scenario), field(case.unwrap_or("")));
+        }
+    }
+
+    /// The samples of this controller follow.
+    pub fn controller(&mut self, name: &str) {
+        self.front = format!("{}{}", self.chapter, field(name));
+    }
+
+    /// Writes one sample.
+    ///
+    /// # Errors
+    /// Whatever the writer cannot do.
+    pub fn sample(&mut self, s: &Sample) -> io::Result<()> {
+        self.line.clear();
+        self.line.push_str(&self.front);
+        let numbers = [s.t, s.r, s.y, s.u, s.applied, s.u_f, s.d_hat, s.d];
+        for (cell, x) in self.cells.iter_mut().zip(numbers) {
+            self.line.push(',');
+            self.line.push_str(cell.set(x));
+        }
+        // Writing to a string does not fail.
+        let _ = writeln!(self.line, ",{},{}", s.mode.name(), s.status.bits());
+        self.to.write_all(self.line.as_bytes())
+    }
+
+    /// The writer, with everything handed to it.
+    pub fn into_inner(self) -> W {
+        self.to
+    }
+}
+
+/// A text as a CSV field: in quotes when it has a comma, a quote, a line break or a space at an end.
 fn field(text: &str) -> String {
-    if text.contains([',', '"', ';']) || text.trim() != text {
+    if text.contains([',', '"', ';', '\n', '\r']) || text.trim() != text {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()
@@ -36,11 +99,46 @@ fn field(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::field;
+    use super::*;
+    use controller_core::{Mode, Status};
 
     #[test]
     fn a_name_with_a_comma_is_one_field() {
         assert_eq!(field("PI, \"fast\""), "\"PI, \"\"fast\"\"\"");
         assert_eq!(field("PI + DOB"), "PI + DOB");
+    }
+
+    #[test]
+    fn a_number_that_stands_still_is_written_again() {
+        let (mode, status) = (Mode::Auto, Status::BAD_INPUT);
+        let sample = |t, y| Sample {
+            t,
+            r: 0.1,
+            y,
+            u: -0.0,
+            applied: 1e-7,
+            u_f: 0.0,
+            d_hat: 2.0,
+            d: 0.0,
+            mode,
+            status,
+        };
+        let mut csv = CsvWriter::new(Vec::new(), true).expect("memory");
+        csv.chapter("a,b.toml", Some("latency = 0.1"));
+        csv.controller("PI");
+        for s in [sample(0.0, 1.0), sample(0.5, f64::NAN), sample(1.0, 0.0)] {
+            csv.sample(&s).expect("memory");
+        }
+        csv.chapter("c.toml", None);
+        csv.controller("PI");
+        csv.sample(&sample(0.0, -0.0)).expect("memory");
+        let expected = "\
+scenario,case,controller,t,r,y,u,applied,u_f,d_hat,d,mode,status
+\"a,b.toml\",latency = 0.1,PI,0,0.1,1,-0,0.0000001,0,2,0,auto,32
+\"a,b.toml\",latency = 0.1,PI,0.5,0.1,NaN,-0,0.0000001,0,2,0,auto,32
+\"a,b.toml\",latency = 0.1,PI,1,0.1,0,-0,0.0000001,0,2,0,auto,32
+c.toml,,PI,0,0.1,-0,-0,0.0000001,0,2,0,auto,32
+";
+        assert_eq!(String::from_utf8(csv.into_inner()).expect("text"), expected);
     }
 }

@@ -1,7 +1,7 @@
 //! Faults and warnings with the line they are in and a caret under it.
 
 use super::{Source, count};
-use crate::scenario::Fault;
+use crate::scenario::{Fault, SourceText};
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use std::fmt;
@@ -54,6 +54,40 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
+/// What keeps a run from being made: one of possibly several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Trouble {
+    /// Something without a place in a text.
+    Problem(Problem),
+    /// The faults of a scenario.
+    Scenario(SourceText, Vec<Fault>),
+}
+
+impl From<Problem> for Trouble {
+    fn from(problem: Problem) -> Self {
+        Self::Problem(problem)
+    }
+}
+
+/// All that is wrong as text for a terminal, in order; ends with a line break. `colours` adds escape sequences.
+#[must_use]
+pub fn render_all(troubles: &[Trouble], colours: bool) -> String {
+    let mut text = String::new();
+    for trouble in troubles {
+        // One empty line between two of them.
+        if !text.is_empty() && !text.ends_with("\n\n") {
+            text.push('\n');
+        }
+        match trouble {
+            Trouble::Problem(problem) => text.push_str(&format!("{problem}\n")),
+            Trouble::Scenario(source, faults) => {
+                text.push_str(&render(source.into(), faults, Severity::Error, colours));
+            }
+        }
+    }
+    text
+}
+
 /// The faults as text for a terminal, each with its line of `source` and a caret; ends with a line break.
 /// `colours` adds escape sequences.
 #[must_use]
@@ -71,11 +105,13 @@ pub fn render(source: Source<'_>, faults: &[Fault], severity: Severity, colours:
     text
 }
 
+/// A fault with the text it is in: that of the scenario, or of a file it includes.
 fn group<'a>(source: Source<'a>, fault: &'a Fault, severity: Severity) -> Group<'a> {
     let level = match severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
+    let source = fault.source.as_deref().map_or(source, Source::from);
     let window = Window::around(source.text, fault);
     let mut snippet = Snippet::source(window.text)
         .path(source.name)

@@ -1,8 +1,9 @@
 //! Files that are either written whole or not at all, and never over another one unless asked.
 
 use super::Problem;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use super::draft::{Draft, publish};
+use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Why a file could not be written.
@@ -66,14 +67,16 @@ impl FileTarget {
         &self.path
     }
 
-    fn folder(&self) -> PathBuf {
+    /// The folder it is in.
+    pub(super) fn folder(&self) -> PathBuf {
         match self.real.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
             _ => PathBuf::from("."),
         }
     }
 
-    fn check(&self) -> Result<(), FileError> {
+    /// Whether it may be written, now.
+    pub(super) fn check(&self) -> Result<(), FileError> {
         let Ok(found) = fs::metadata(&self.real) else { return Ok(()) };
         let name = self.path.display();
         if !found.is_file() {
@@ -87,43 +90,37 @@ impl FileTarget {
         Ok(())
     }
 
-    /// Fills the file: `fill` writes to a temporary file in the same folder, which takes the name at the end.
+    /// Begins the file: what is written goes to a temporary file in the same folder until it is [published](super::publish).
     ///
     /// # Errors
-    /// What `fill` or the system reports; the temporary file is then removed and a file that existed is as
-    /// before.
-    pub fn write(&self, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
-        let name = self.real.file_name().unwrap_or_default().to_string_lossy();
-        let temporary = self.folder().join(format!(".{name}.{}.tmp", std::process::id()));
-        let written = self.fill(&temporary, fill);
-        if written.is_err() {
-            // The first error is the one to report; that the removal fails, too, adds nothing.
-            let _ = fs::remove_file(&temporary);
-        }
-        written
+    /// What the system reports.
+    pub fn create(&self) -> Result<Draft, FileError> {
+        Draft::create(self)
     }
 
-    fn fill(
-        &self,
-        temporary: &Path,
-        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<(), FileError> {
-        let failed = |error: io::Error| {
-            Problem::new("file", format!("cannot write `{}`: {error}", self.path.display()))
-        };
-        let file = File::create_new(temporary).map_err(failed)?;
-        let mut writer = BufWriter::new(file);
-        fill(&mut writer).map_err(failed)?;
-        let file = writer.into_inner().map_err(|error| failed(error.into_error()))?;
-        file.sync_all().map_err(failed)?;
-        drop(file);
-        // It may have come into being while the run lasted.
-        self.check()?;
-        fs::rename(temporary, &self.real).map_err(failed)
+    /// Fills the file at once.
+    ///
+    /// # Errors
+    /// What `fill` or the system reports; nothing is left behind then, and a file that existed is as before.
+    pub fn write(&self, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        let mut draft = self.create()?;
+        fill(&mut draft).map_err(|error| self.failed(&error))?;
+        publish(vec![draft.complete()?])
+    }
+
+    /// That the file cannot be written.
+    #[must_use]
+    pub fn failed(&self, error: &dyn std::fmt::Display) -> FileError {
+        Problem::new("file", format!("cannot write `{}`: {error}", self.path.display()))
+    }
+
+    /// What is replaced or made, without links.
+    pub(super) fn real(&self) -> &Path {
+        &self.real
     }
 }
 
-/// Whether two names are those of one file, through links, too.
+/// Whether two names are those of one file, through links, too; also of one that does not exist yet.
 #[must_use]
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
     #[cfg(unix)]
@@ -134,7 +131,16 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
             return a == b;
         }
     }
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+    matches!((absolute(a), absolute(b)), (Some(a), Some(b)) if a == b)
+}
+
+/// A name without links, whether the file exists or is yet to be made.
+fn absolute(path: &Path) -> Option<PathBuf> {
+    let through = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Some(folder.canonicalize().ok()?.join(path.file_name()?))
+    };
+    path.canonicalize().ok().or_else(|| through(path))
 }
 
 #[cfg(test)]
@@ -157,6 +163,37 @@ mod tests {
         });
         assert!(failure.expect_err("an error").message.contains("the disc is full"));
         assert_eq!(fs::read_dir(&folder).expect("readable").count(), 0);
+        fs::remove_dir_all(&folder).expect("removable");
+    }
+
+    #[test]
+    fn two_names_of_a_file_that_is_yet_to_be_made() {
+        let folder = folder("same");
+        let (a, b) = (
+            folder.join("new.csv"),
+            folder.join("..").join(folder.file_name().expect("a name")).join("new.csv"),
+        );
+        assert!(is_same_file(&a, &b));
+        assert!(!is_same_file(&a, &folder.join("other.csv")));
+        fs::remove_dir_all(&folder).expect("removable");
+    }
+
+    /// The second file cannot take its name any more: the first one does not appear either.
+    #[test]
+    fn files_are_published_together_or_not_at_all() {
+        let folder = folder("together");
+        let targets = ["a", "b"].map(|name| FileTarget::new(&folder.join(name), false).expect("free"));
+        let complete = targets.iter().map(|target| {
+            let mut draft = target.create().expect("a temporary file");
+            draft.write_all(b"new").expect("writable");
+            draft.complete().expect("complete")
+        });
+        let complete = complete.collect();
+        fs::write(folder.join("b"), "mine").expect("writable");
+        let error = publish(complete).expect_err("it exists now");
+        assert_eq!(error.code, "file-exists");
+        assert_eq!(fs::read_dir(&folder).expect("readable").count(), 1);
+        assert_eq!(fs::read_to_string(folder.join("b")).expect("readable"), "mine");
         fs::remove_dir_all(&folder).expect("removable");
     }
 

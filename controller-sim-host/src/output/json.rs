@@ -1,19 +1,47 @@
 //! JSON for programs: one object, its keys in a fixed order, numbers finite or null.
 
 use super::table::remarks;
-use super::{Problem, Source, precision_name};
-use crate::scenario::{Fault, Scenario};
-use crate::simulate::{EventKind, Metrics, Precision, RunResult};
+use super::{Chapter, Problem, Trouble, precision_name};
+use crate::scenario::Fault;
+use crate::simulate::{EventKind, Metrics};
 use serde::Serialize;
 use std::borrow::Cow;
 
+/// The JSON Schema (draft 2020-12) of everything that these functions give.
+pub const SCHEMA: &str = include_str!("schema.json");
+
+#[derive(Serialize)]
+struct Runs<'a> {
+    runs: Vec<Run<'a>>,
+}
+
 #[derive(Serialize)]
 struct Run<'a> {
+    version: &'static str,
     scenario: &'a str,
+    title: &'a str,
+    case: Option<&'a str>,
+    plant: String,
     ts: f64,
+    duration: f64,
+    latency: f64,
+    substeps: usize,
     precision: &'static str,
+    files: Vec<&'a Written>,
     controllers: Vec<Controller<'a>>,
     warnings: Vec<Place<'a>>,
+}
+
+/// A file that a run has written.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Written {
+    /// `report`, `svg`, `csv` or `parquet`.
+    pub kind: &'static str,
+    /// Its path, as it was given.
+    pub path: String,
+    /// Which run it is about; `None`: all of them.
+    #[serde(skip)]
+    pub run: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -56,6 +84,7 @@ struct Error<'a> {
 
 #[derive(Serialize)]
 struct Place<'a> {
+    file: Option<&'a str>,
     line: Option<usize>,
     column: Option<usize>,
     length: Option<usize>,
@@ -63,6 +92,22 @@ struct Place<'a> {
     code: &'a str,
     message: Cow<'a, str>,
     help: Option<&'a str>,
+}
+
+impl<'a> Place<'a> {
+    /// What has no place in a text.
+    fn nowhere(code: &'a str, message: impl Into<Cow<'a, str>>, help: Option<&'a str>) -> Self {
+        Self {
+            file: None,
+            line: None,
+            column: None,
+            length: None,
+            text: None,
+            code,
+            message: message.into(),
+            help,
+        }
+    }
 }
 
 impl From<&Metrics> for Indices {
@@ -81,17 +126,21 @@ pub(super) fn kind_name(kind: EventKind) -> &'static str {
     }
 }
 
-/// The result of a run as JSON: `scenario` (the name of `source`), `ts`, `precision`, `controllers` and
-/// `warnings` (those of the scenario with their places, then the remarks on the run with the code `run` and no place).
+/// The results as JSON: of one chapter its object, of several `{"runs": [...]}`. Warnings are those of the scenario with
+/// their places, then the remarks on the run with the code `run` and no place.
 #[must_use]
-pub fn run_json(
-    source: Source<'_>,
-    scenario: &Scenario,
-    precision: Precision,
-    result: &RunResult,
-    warnings: &[Fault],
-) -> String {
-    let controllers = result.controllers.iter().map(|controller| Controller {
+pub fn run_json(chapters: &[Chapter<'_>], files: &[Written]) -> String {
+    match chapters {
+        [only] => text(&run(only, 0, files)),
+        several => {
+            text(&Runs { runs: several.iter().enumerate().map(|(i, one)| run(one, i, files)).collect() })
+        }
+    }
+}
+
+fn run<'a>(chapter: &Chapter<'a>, index: usize, files: &'a [Written]) -> Run<'a> {
+    let scenario = chapter.scenario;
+    let controllers = chapter.result.controllers.iter().map(|controller| Controller {
         name: &controller.name,
         events: controller
             .events
@@ -105,53 +154,56 @@ pub fn run_json(
         total: Indices::from(&controller.total),
     });
     // What is said of the run has no place in the scenario.
-    let remarks = remarks(result).map(|(name, text)| Place {
-        line: None,
-        column: None,
-        length: None,
-        text: None,
-        code: "run",
-        message: Cow::Owned(format!("{name}: {text}")),
-        help: None,
-    });
-    text(&Run {
-        scenario: source.name,
+    let remarks =
+        remarks(chapter.result).map(|(name, text)| Place::nowhere("run", format!("{name}: {text}"), None));
+    Run {
+        version: env!("CARGO_PKG_VERSION"),
+        scenario: chapter.name,
+        title: &scenario.title,
+        case: chapter.case,
+        plant: scenario.plant.to_string(),
         ts: scenario.ts,
-        precision: precision_name(precision),
+        duration: scenario.duration,
+        latency: scenario.latency,
+        substeps: scenario.substeps,
+        precision: precision_name(chapter.precision),
+        files: files.iter().filter(|file| file.run.is_none_or(|run| run == index)).collect(),
         controllers: controllers.collect(),
-        warnings: places(source.text, warnings).into_iter().chain(remarks).collect(),
-    })
+        warnings: places(chapter.name, chapter.text, chapter.warnings).chain(remarks).collect(),
+    }
 }
 
-/// A failure as JSON: `{"error": {"code", "message", "help", "places"}}`. With faults of a scenario the first
-/// one gives `code`, `message` and `help`, and `places` has all of them; a problem without a place has no
-/// places.
+/// What is wrong as JSON: `{"error": {"code", "message", "help", "places"}}`. The first fault gives `code`, `message` and
+/// `help`, and `places` has all of them; a problem without a place that comes alone has no places.
 #[must_use]
-pub fn error_json(problem: &Problem, text_read: &str, faults: &[Fault]) -> String {
-    let error = match faults {
-        [] => Error {
-            code: problem.code,
-            message: problem.message.clone(),
-            help: problem.help.as_deref(),
-            places: Vec::new(),
-        },
-        [first, others @ ..] => Error {
-            code: first.code,
-            message: match others.len() {
-                0 => first.message.clone(),
-                n => format!("{} (and {n} more)", first.message),
-            },
-            help: first.help.as_deref(),
-            places: places(text_read, faults),
-        },
+pub fn error_json(troubles: &[Trouble]) -> String {
+    let all: Vec<Place<'_>> = troubles.iter().flat_map(trouble_places).collect();
+    let (code, message, help) = match all.first() {
+        Some(first) => (first.code, &*first.message, first.help),
+        None => ("internal", "", None),
     };
-    text(&Failure { error })
+    let message = match all.len() {
+        0 | 1 => message.to_owned(),
+        n => format!("{message} (and {} more)", n - 1),
+    };
+    let lonely = matches!(troubles, [Trouble::Problem(_)]);
+    text(&Failure { error: Error { code, message, help, places: if lonely { Vec::new() } else { all } } })
 }
 
-fn places<'a>(text: &str, faults: &'a [Fault]) -> Vec<Place<'a>> {
-    let one = |fault: &'a Fault| {
+fn trouble_places(trouble: &Trouble) -> Vec<Place<'_>> {
+    match trouble {
+        Trouble::Problem(Problem { code, message, help }) => {
+            vec![Place::nowhere(code, message.as_str(), help.as_deref())]
+        }
+        Trouble::Scenario(source, faults) => places(&source.name, &source.text, faults).collect(),
+    }
+}
+
+fn places<'a>(name: &'a str, text: &'a str, faults: &'a [Fault]) -> impl Iterator<Item = Place<'a>> {
+    faults.iter().map(move |fault| {
         let place = fault.place(text);
         Place {
+            file: Some(fault.source.as_ref().map_or(name, |source| &source.name)),
             line: Some(place.line),
             column: Some(place.column),
             length: Some(place.length),
@@ -160,13 +212,58 @@ fn places<'a>(text: &str, faults: &'a [Fault]) -> Vec<Place<'a>> {
             message: Cow::Borrowed(&*fault.message),
             help: fault.help.as_deref(),
         }
-    };
-    faults.iter().map(one).collect()
+    })
+}
+
+/// That a built-in scenario was saved: `{"saved": PATH}`.
+#[must_use]
+pub fn saved_json(path: &str) -> String {
+    #[derive(Serialize)]
+    struct Saved<'a> {
+        saved: &'a str,
+    }
+    text(&Saved { saved: path })
+}
+
+/// What is built in, names and titles: `{"scenarios": [{"name", "title"}]}`.
+#[must_use]
+pub fn list_json<'a>(scenarios: impl Iterator<Item = (&'a str, String)>) -> String {
+    #[derive(Serialize)]
+    struct Item<'a> {
+        name: &'a str,
+        title: String,
+    }
+    #[derive(Serialize)]
+    struct List<'a> {
+        scenarios: Vec<Item<'a>>,
+    }
+    text(&List { scenarios: scenarios.map(|(name, title)| Item { name, title }).collect() })
+}
+
+/// A text that a command prints, completions or a manual page: `{"text": TEXT}`.
+#[must_use]
+pub fn text_json(content: &str) -> String {
+    #[derive(Serialize)]
+    struct Content<'a> {
+        text: &'a str,
+    }
+    text(&Content { text: content })
+}
+
+/// Files that a command has written: `{"written": [PATH, ...]}`.
+#[must_use]
+pub fn written_json(paths: &[String]) -> String {
+    #[derive(Serialize)]
+    struct List<'a> {
+        written: &'a [String],
+    }
+    text(&List { written: paths })
 }
 
 /// These types have text keys and no maps: they can always be written.
 fn text(value: &impl Serialize) -> String {
-    serde_json::to_string_pretty(value).unwrap_or_else(|error| {
+    let text = serde_json::to_string_pretty(value).unwrap_or_else(|error| {
         format!("{{\"error\": {{\"code\": \"internal\", \"message\": \"{error}\", \"help\": null, \"places\": []}}}}")
-    })
+    });
+    text + "\n"
 }

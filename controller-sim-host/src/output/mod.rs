@@ -1,19 +1,28 @@
 //! What a run and its mistakes look like: tables for people, JSON for programs, CSV files, messages with
 //! carets.
 
+#![doc = include_str!("json.md")]
+
 mod csv;
+mod draft;
 mod faults;
 mod file;
 mod json;
+mod parquet;
+mod samples;
 pub(crate) mod table;
 
-pub use csv::write_csv;
-pub use faults::{Problem, Severity, render};
+pub use self::parquet::ParquetWriter;
+pub use csv::CsvWriter;
+pub use draft::{Complete, Draft, publish, remove_drafts};
+pub use faults::{Problem, Severity, Trouble, render, render_all};
 pub use file::{FileError, FileTarget, is_same_file};
-pub use json::{error_json, run_json};
+pub use json::{SCHEMA, Written, error_json, list_json, run_json, saved_json, text_json, written_json};
+pub use samples::SampleFiles;
 pub use table::run_table;
 
-use crate::scenario::Fault;
+use crate::report::Chapter;
+use crate::scenario::{Fault, SourceText};
 use crate::simulate::Precision;
 
 /// A scenario's text with the name it goes by in messages.
@@ -23,6 +32,12 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// The text.
     pub text: &'a str,
+}
+
+impl<'a> From<&'a SourceText> for Source<'a> {
+    fn from(source: &'a SourceText) -> Self {
+        Self { name: &source.name, text: &source.text }
+    }
 }
 
 /// How a precision is written: `f32` or `f64`.

@@ -1,8 +1,7 @@
 //! The table of a run, for people: one block per stretch of time, one line per controller.
 
-use super::precision_name;
-use crate::scenario::Scenario;
-use crate::simulate::{EventKind, Metrics, Precision, RunResult};
+use super::{Chapter, precision_name};
+use crate::simulate::{EventKind, Metrics, RunResult};
 
 pub(crate) const COLUMNS: [&str; 6] = ["IAE", "ISE", "ITAE", "IE", "e_max", "TV"];
 /// Width of a number with its mark.
@@ -21,14 +20,19 @@ pub(crate) struct Block<'a> {
 /// The indices of every controller in every stretch and over the whole run, at most 100 columns wide. Of two
 /// or more controllers the best value of each column is marked `*`.
 #[must_use]
-pub fn run_table(scenario: &Scenario, precision: Precision, result: &RunResult) -> String {
-    let mut text = format!(
+pub fn run_table(chapter: &Chapter<'_>) -> String {
+    let Chapter { scenario, result, .. } = chapter;
+    let mut text = String::new();
+    if !scenario.title.is_empty() {
+        text.push_str(&format!("{}\n", scenario.title));
+    }
+    text.push_str(&format!(
         "plant {}\nts = {} s, {} s, {}\n",
         scenario.plant,
         scenario.ts,
         scenario.duration,
-        precision_name(precision)
-    );
+        precision_name(chapter.precision)
+    ));
     let names = result.controllers.iter().map(|c| c.name.chars().count()).max().unwrap_or(0);
     let width = names.clamp("controller".len(), WIDEST_NAME);
     for block in blocks(result) {

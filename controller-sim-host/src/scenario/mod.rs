@@ -43,6 +43,7 @@ pub(crate) use number::{show, show_short};
 pub use override_key::override_key;
 pub use read::{Read, VERSION, read};
 pub use signal::{Between, Recording, Signal};
+pub(crate) use suggest::closest;
 
 use controller_core::{ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
 use controller_design::model::TransferFunction;

@@ -56,7 +56,7 @@ const OTHER_NAMES: &[(&str, &str)] = &[
 ];
 
 /// The one of `known` that `word` was probably meant to be.
-pub(super) fn closest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
+pub(crate) fn closest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     let word = plain(word);
     if let Some(equal) = known.iter().find(|k| plain(k) == word) {
         return Some(equal);

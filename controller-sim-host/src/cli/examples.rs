@@ -1,0 +1,50 @@
+//! The examples below the help of each command.
+
+pub(super) const PROGRAM: &str = "\
+Examples:
+  controller-sim                                 run the built-in scenario
+  controller-sim demo --save my.toml             write it to a file, to change it
+  controller-sim run my.toml                     run a scenario and compare its controllers
+  controller-sim run my.toml --report my.html    with plots, as a page for the browser
+  controller-sim demo --list                     everything that is built in
+
+In the source tree write `cargo sim` for `controller-sim`.
+
+Exit codes: 0 done, 2 bad input, 3 refused, 130 stopped, 1 anything else.";
+
+pub(super) const RUN: &str = "\
+Examples:
+  controller-sim run my.toml
+  controller-sim run my.toml --report my.html              plots and tables on one page
+  controller-sim run my.toml --report my.html --force      replace my.html
+  controller-sim run fast.toml slow.toml --svg plot.svg    plot-1.svg and plot-2.svg
+  controller-sim run my.toml --csv my.csv                  every sample
+  controller-sim run my.toml --precision f32               as the target computes
+  controller-sim run my.toml --set latency=0.05 --set 'plant.tf=\"exp(-s)/(1+2*s)\"'
+  controller-sim run my.toml --set 'controller.\"PI + DOB\".observer.alpha=0.2'
+  cat my.toml | controller-sim run - --json";
+
+pub(super) const DEMO: &str = "\
+Examples:
+  controller-sim demo                               run the first one
+  controller-sim demo --list                        what there is
+  controller-sim demo windup --report windup.html   run another one, with plots
+  controller-sim demo windup --save my.toml         write it to a file, to change it
+  controller-sim demo --save                        write the first one to demo.toml, or demo-2.toml, ...
+
+A name that several names begin with runs all of them in order: `windup` all of `windup-...`.";
+
+pub(super) const COMPLETIONS: &str = "\
+Examples:
+  controller-sim completions bash > ~/.local/share/bash-completion/completions/controller-sim
+  controller-sim completions zsh > ~/.zfunc/_controller-sim
+  controller-sim completions fish > ~/.config/fish/completions/controller-sim.fish";
+
+pub(super) const MAN: &str = "\
+Examples:
+  controller-sim man | man -l -                       read it
+  controller-sim man --dir ~/.local/share/man/man1    a page for each command";
+
+pub(super) const SCHEMA: &str = "\
+Examples:
+  controller-sim schema > controller-sim.schema.json";

@@ -1,0 +1,79 @@
+//! Runs that are stopped from outside.
+
+use crate::folder::{BASE, Folder, json, text};
+use std::fs;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Nobody waits longer for anything here.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A scenario that takes hours.
+fn endless() -> String {
+    BASE.replacen("duration = 20.0", "duration = 9e6", 1)
+}
+
+fn start(folder: &Folder, arguments: &[&str]) -> Child {
+    let mut command = folder.command(arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
+}
+
+fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let started = Instant::now();
+    while !is_so() {
+        assert!(started.elapsed() < PATIENCE, "still not: {what}");
+        sleep(Duration::from_millis(10));
+    }
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill is there");
+    assert!(sent.success());
+}
+
+fn end(mut child: Child) -> Output {
+    wait_until("the end of the program", || child.try_wait().expect("it can be asked").is_some());
+    child.wait_with_output().expect("it has ended")
+}
+
+/// The size of the temporary file of `name`, when there is one.
+fn temporary(folder: &Folder, name: &str) -> Option<u64> {
+    let found = folder.names().into_iter().find(|one| one.starts_with(&format!(".{name}.")))?;
+    fs::metadata(folder.0.join(found)).ok().map(|file| file.len())
+}
+
+#[test]
+fn a_file_that_is_being_written_is_gone_and_an_earlier_one_untouched() {
+    let folder = Folder::new("interrupt");
+    folder.write("s.toml", &endless());
+    folder.write("old.csv", "mine");
+    for (name, signal_name) in [("new.csv", "-INT"), ("old.csv", "-TERM")] {
+        let others = ["--parquet", "p.parquet", "--svg", "p.svg"];
+        let child = start(&folder, &[&["run", "s.toml", "--force", "--csv", name], &others[..]].concat());
+        wait_until("a temporary file with something in it", || {
+            temporary(&folder, name).is_some_and(|n| n > 100_000)
+        });
+        signal(&child, signal_name);
+        let output = end(child);
+        let said = (text(&output.stdout), text(&output.stderr));
+        assert_eq!((output.status.code(), said), (Some(130), ("", "stopped; nothing was written\n")));
+        assert_eq!(
+            (folder.names(), &*folder.read("old.csv")),
+            (vec!["old.csv".into(), "s.toml".into()], "mine")
+        );
+    }
+}
+
+#[test]
+fn runs_side_by_side_are_stopped() {
+    let folder = Folder::new("interrupt-json");
+    folder.write("s.toml", &endless());
+    let child = start(&folder, &["run", "s.toml", "s.toml", "--json"]);
+    // There is nothing to be seen of a run without files; were the signal too early, it would end the program otherwise.
+    sleep(Duration::from_secs(1));
+    signal(&child, "-INT");
+    let output = end(child);
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(130), ""));
+    assert_eq!(json(&output)["error"]["code"], "stopped");
+}

@@ -1,0 +1,14 @@
+//! The program as it is called: exit codes, streams, JSON, files.
+
+mod faults;
+mod files;
+mod folder;
+mod gallery;
+#[cfg(unix)]
+mod interrupt;
+mod pages;
+mod parquet;
+mod runs;
+mod same_bytes;
+mod schema;
+mod several;
