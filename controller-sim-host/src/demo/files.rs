@@ -7,5 +7,29 @@ macro_rules! texts {
     };
 }
 
-pub(super) const ALL: &[(&str, &str)] =
-    texts!["demo.toml", "first.toml", "sensor_failure.toml", "windup.toml",];
+pub(super) const ALL: &[(&str, &str)] = texts![
+    "demo.toml",
+    "first.toml",
+    "chapter-gp1.toml",
+    "chapter-gp2.toml",
+    "chapter-gp3.toml",
+    "chapter-gp4.toml",
+    "chapter-gp5.toml",
+    "chapter-gp6.toml",
+    "windup.toml",
+    "sensor.toml",
+    "dob-against-ramps.toml",
+    "latency.toml",
+    "single-precision.toml",
+    "figures/de-fig-06.toml",
+    "figures/de-fig-07.toml",
+    "figures/de-fig-11.toml",
+    "figures/de-fig-12.toml",
+    "figures/de-fig-14.toml",
+    "figures/dob-fig-04-05-plant-1-ms-1.2.toml",
+    "figures/dob-fig-04-05-plant-1-ms-2.0.toml",
+    "figures/dob-fig-04-05-plant-2-ms-1.2.toml",
+    "figures/dob-fig-04-05-plant-2-ms-2.0.toml",
+    "figures/dob-fig-04-05-plant-3-ms-1.2.toml",
+    "figures/dob-fig-04-05-plant-3-ms-2.0.toml",
+];

@@ -122,6 +122,7 @@ mod tests {
             d: 0.0,
             mode,
             status,
+            inner: None,
         };
         let mut csv = CsvWriter::new(Vec::new(), true).expect("memory");
         csv.chapter("a,b.toml", Some("latency = 0.1"));
