@@ -1,6 +1,7 @@
 //! What the README shows is true: its scenario runs, and the excerpt of the demo's table is what the demo prints.
 
 use controller_sim_host::output::run_table;
+use controller_sim_host::report::Chapter;
 use controller_sim_host::scenario::read;
 use controller_sim_host::simulate::{Precision, RunOptions, run};
 
@@ -35,7 +36,15 @@ fn the_excerpt_of_the_demo_is_what_the_demo_prints() {
     let shown = block("## The two commands", "text");
     let read = read(controller_sim_host::demo::SCENARIO, Precision::F64).expect("the demo is valid");
     let result = run(&read.scenario, RunOptions::default()).expect("valid");
-    let printed = run_table(&read.scenario, Precision::F64, &result);
+    let printed = run_table(&Chapter {
+        name: "demo",
+        case: None,
+        text: controller_sim_host::demo::SCENARIO,
+        scenario: &read.scenario,
+        precision: Precision::F64,
+        result: &result,
+        warnings: &read.warnings,
+    });
     for line in shown.lines() {
         assert!(printed.lines().any(|l| l.trim_end() == line.trim_end()), "not printed: {line}\n{printed}");
     }
