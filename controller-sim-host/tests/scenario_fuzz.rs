@@ -1,8 +1,8 @@
 //! Any text at all: never a panic, and every place inside the text.
 
 use controller_sim_host::demo;
-use controller_sim_host::output::{Problem, Severity, Source, error_json, render};
-use controller_sim_host::scenario::{Fault, read};
+use controller_sim_host::output::{Severity, Source, Trouble, error_json, render};
+use controller_sim_host::scenario::{Fault, SourceText, read};
 use controller_sim_host::simulate::Precision;
 
 const TEXTS: [&str; 4] = [
@@ -120,7 +120,10 @@ fn check(text: &str, faults: &[Fault], severity: Severity) {
         let shown = render(source, faults, severity, colours);
         assert_eq!(shown.is_empty(), faults.is_empty());
     }
-    let json = error_json(&Problem::new("none", ""), text, faults);
+    let json = error_json(&[Trouble::Scenario(
+        SourceText { name: "fuzz.toml".to_owned(), text: text.to_owned() },
+        faults.to_vec(),
+    )]);
     assert!(serde_json::from_str::<serde_json::Value>(&json).is_ok(), "{json}");
 }
 
