@@ -1,8 +1,9 @@
 //! Plants in all their forms, and what lies around them.
 
+use controller_core::Mode;
 use controller_core::plant_model::PlantModel;
 use controller_design::model::{TransferFunction, parse};
-use controller_sim_host::scenario::{Actuator, CompensatorSpec, Scenario, Sensor, read};
+use controller_sim_host::scenario::{Actuator, CompensatorSpec, Scenario, Sensor, code, read};
 use controller_sim_host::simulate::Precision;
 
 fn scenario(middle: &str) -> Scenario {
@@ -95,4 +96,106 @@ fn texts_for_people() {
     );
     assert_eq!((&*s.title, &*s.description), ("A tank", "First.\nStill first.\n\nSecond."));
     assert_eq!((&*s.units.y, &*s.units.u, &*s.events[0].label), ("°C", "%", "lid off"));
+}
+
+const CASCADE: &str = r#"version = 1
+ts = 0.1
+duration = 10
+initial = { setpoint = 4 }
+[plant]
+tf = "exp(-s)/(1+10*s)"
+inner = "-2/(1+s)"
+[[controller]]
+name = "cascade"
+pid = { kp = 2, ki = 0.2 }
+limits = { lo = -1, hi = 10 }
+[controller.secondary]
+pid = { kp = -1, ki = -0.5 }
+limits = { lo = -5, hi = 5, rate = 3 }
+estimator = { gain = -2, a1 = 1, kfd = 0.5, tfd = 0.2 }
+"#;
+
+#[test]
+fn a_cascade() {
+    let read = read(CASCADE, Precision::F64).unwrap_or_else(|faults| panic!("{faults:?}"));
+    assert_eq!(read.warnings, []);
+    let primary = &read.scenario.controllers[0];
+    assert_eq!((primary.mode, primary.config.limits.lo), (Mode::Auto, -1.0));
+    let secondary = primary.secondary.as_ref().expect("the loop inside");
+    assert_eq!((&*secondary.name, secondary.mode), ("cascade (secondary)", Mode::Cascade));
+    assert_eq!((secondary.config.pid.kp, secondary.config.limits.rate_up), (-1.0, Some(3.0)));
+    assert!(matches!(secondary.compensator, CompensatorSpec::Estimator(_)));
+    assert_eq!(secondary.secondary, None);
+}
+
+#[test]
+fn what_is_wrong_in_a_cascade() {
+    for (old, new, line, code, message) in [
+        (
+            "inner = \"-2/(1+s)\"",
+            "",
+            12,
+            code::CONFLICT,
+            "a secondary controller needs the part of the plant",
+        ),
+        ("-2/(1+s)", "-2*s/(1+s)", 7, code::CONFLICT, "`plant.inner` has a zero at s = 0"),
+        (
+            "gain = -2",
+            "gain = 2",
+            15,
+            code::CONFLICT,
+            "the model's gain is 2, but the controller's `ki` acts as -0.5",
+        ),
+        (
+            "lo = -5",
+            "lo = 50",
+            14,
+            code::CONFLICT,
+            "`secondary.limits.lo = 50` must be below `secondary.limits.hi = 5`",
+        ),
+        ("kp = -1,", "Kp = -1,", 13, code::UNKNOWN_KEY, "unknown key `Kp` in `secondary.pid`"),
+        ("estimator =", "name = \"x\"\nestimator =", 15, code::CONFLICT, "is called after its primary one"),
+        ("estimator =", "mode = \"auto\"\nestimator =", 15, code::CONFLICT, "always in mode cascade"),
+        ("estimator =", "secondary = {}\nestimator =", 15, code::CONFLICT, "a cascade has two controllers"),
+        (
+            "[controller.sec",
+            "observer = { model = \"1/(1+s)\", alpha = 1 }\n[controller.sec",
+            12,
+            code::CONFLICT,
+            "a primary controller has no `observer`",
+        ),
+    ] {
+        assert!(CASCADE.contains(old));
+        let text = CASCADE.replacen(old, new, 1);
+        let faults = read(&text, Precision::F64).expect_err(new);
+        assert_eq!(faults.len(), 1, "{faults:?}");
+        assert_eq!((faults[0].place(&text).line, faults[0].code), (line, code), "{faults:?}");
+        assert!(faults[0].message.contains(message), "{faults:?}");
+    }
+}
+
+/// Each loop is judged by what it drives: the secondary by the inner part, the primary by the outer one.
+#[test]
+fn what_is_odd_in_a_cascade() {
+    for (old, new, line, code, message) in [
+        ("kp = -1, ki = -0.5", "kp = 1, ki = 0.5, action = \"direct\"", 0, "", ""),
+        ("pid = { kp = 2, ki = 0.2 }", "pid = { kp = -2, ki = -0.2 }", 10, code::SIGN, "(-0.2 and 1)"),
+        // 4 at the end, 4 between the parts, -2 at the actuator.
+        (
+            "lo = -1, hi = 10",
+            "lo = -1, hi = 3",
+            11,
+            code::CLAMPED,
+            "the output 4 that holds the initial state",
+        ),
+        ("lo = -5, hi", "lo = -1, hi", 14, code::CLAMPED, "the output -2 that holds the initial state"),
+    ] {
+        assert!(CASCADE.contains(old));
+        let text = CASCADE.replacen(old, new, 1);
+        let warnings =
+            read(&text, Precision::F64).unwrap_or_else(|faults| panic!("{new}: {faults:?}")).warnings;
+        let said: Vec<_> = warnings.iter().map(|w| (w.place(&text).line, w.code)).collect();
+        assert_eq!(said, if line == 0 { vec![] } else { vec![(line, code)] }, "{warnings:?}");
+        assert!(warnings.iter().all(|w| w.message.contains(message)), "{warnings:?}");
+    }
 }

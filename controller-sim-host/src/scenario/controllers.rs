@@ -1,6 +1,5 @@
 //! A `[[controller]]` as it is read, and as events change it.
 
-use super::ControllerSpec;
 use super::compensators;
 use super::fault::{Fault, code};
 use super::pid::PidDraft;
@@ -8,6 +7,7 @@ use super::places::Places;
 use super::sections::{alarms, anti_windup, fallback, limits, mode, range, setpoint, take, take_optional};
 use super::table::Table;
 use super::value::shortened;
+use super::{CompensatorSpec, ControllerSpec};
 use controller_core::{ControllerConfig, Mode, Param};
 use std::ops::Range;
 
@@ -16,6 +16,7 @@ const LIMITS: &str = "`limits = { lo = 0.0, hi = 100.0 }`";
 const SETPOINT: &str = "`setpoint = { lo = 0.0, hi = 100.0 }`";
 const SETPOINT_LIMITS: &str = "`setpoint_limits = { lo = 0.0, hi = 100.0 }`";
 const ANTI_WINDUP: &str = "`anti_windup = { rule = \"back-calculation\" }`";
+const SECONDARY: &str = "`[controller.secondary]` and below it `pid = { kp = 1.0, ki = 0.5 }`";
 const RANGE: &str = "`{ lo = 0.0, hi = 100.0 }`";
 
 /// The keys of an event that change parameters, in the order they are read.
@@ -33,15 +34,47 @@ pub(super) struct Draft {
     /// The name and where it is; none when it is missing or wrong.
     pub(super) name_span: Option<Range<usize>>,
     pub(super) places: Places,
+    /// The loop inside of a cascade, and where its key is.
+    pub(super) secondary: Option<(Box<Draft>, Range<usize>)>,
 }
 
 impl Draft {
     /// Reads a controller. It comes back whole even with faults, so that the rest can be checked, too.
     pub(super) fn read(table: Table<'_>) -> Self {
+        let (name, name_span) = read_name(&table);
+        let mode = mode(&table).unwrap_or(Mode::Auto);
+        let secondary = table.table("secondary", SECONDARY).map(|part| {
+            let place = table.key_span("secondary").unwrap_or(part.place.clone());
+            (Box::new(Self::read_secondary(part, &name)), place)
+        });
+        if let Some((_, place)) = &secondary {
+            refuse_compensator(&table, place);
+        }
+        let mut draft = Self { name_span, secondary, ..Self::read_law(table, name, mode) };
+        if draft.secondary.is_some() {
+            draft.spec.compensator = CompensatorSpec::None;
+        }
+        draft
+    }
+
+    /// Reads the secondary controller of the one called `primary`.
+    fn read_secondary(table: Table<'_>, primary: &str) -> Self {
+        for (key, problem) in [
+            ("name", "a secondary controller is called after its primary one"),
+            ("mode", "a secondary controller is always in mode cascade"),
+            ("secondary", "a cascade has two controllers"),
+        ] {
+            if let Some(span) = table.key_span(key) {
+                table.log.fault(Fault::new(code::CONFLICT, span, problem).help("remove it"));
+            }
+        }
+        Self::read_law(table, format!("{primary} (secondary)"), Mode::Cascade)
+    }
+
+    /// Reads everything but the name, the mode and the loop inside.
+    fn read_law(table: Table<'_>, name: String, mode: Mode) -> Self {
         let mut places = Places::new(table.place.clone());
         let mut config = ControllerConfig::default();
-        let (name, name_span) = read_name(&table);
-
         let pid = read_pid(&table, &mut places);
         let compensator = compensators::read(&table, &mut places);
         if let Some(part) = table.table("limits", LIMITS) {
@@ -70,14 +103,9 @@ impl Draft {
         }
         take_optional(&table, "off_output", Param::OffOutput, &mut places, &mut config.off_output);
         take(&table, "initial_output", Param::InitialOutput, &mut places, &mut config.initial_output);
-        let mode = mode(&table).unwrap_or(Mode::Auto);
         table.finish();
-        Self {
-            pid,
-            spec: ControllerSpec { name, config, compensator, mode, secondary: None },
-            name_span,
-            places,
-        }
+        let spec = ControllerSpec { name, config, compensator, mode, secondary: None };
+        Self { pid, spec, name_span: None, places, secondary: None }
     }
 
     /// Reads the parameter keys of an event over what the controller had so far.
@@ -108,11 +136,32 @@ impl Draft {
     pub(super) fn spec(&self) -> ControllerSpec {
         let mut spec = self.spec.clone();
         spec.config.pid = self.pid.config();
+        spec.secondary = self.secondary.as_ref().map(|(inner, _)| Box::new(inner.spec()));
         spec
+    }
+
+    /// The places of its parameters and of those of the loop inside.
+    pub(super) fn all_places(&self) -> Places {
+        let mut places = self.places.clone();
+        places.inner = self.secondary.as_ref().map(|(inner, _)| Box::new(inner.places.clone()));
+        places
     }
 
     pub(super) fn has_converted_gains(&self) -> bool {
         self.pid.is_converted()
+    }
+}
+
+/// The model of a disturbance block is one of what the controller drives: here a closed loop.
+fn refuse_compensator(table: &Table<'_>, secondary: &Range<usize>) {
+    for key in ["estimator", "observer"] {
+        if let Some(span) = table.key_span(key) {
+            let message =
+                format!("a primary controller has no `{key}`: it drives a closed loop, not the plant");
+            let fault = Fault::new(code::CONFLICT, span, message);
+            let help = "write it in `secondary`, whose plant is the inner part";
+            table.log.fault(fault.help(help).related(secondary.clone(), "the secondary controller"));
+        }
     }
 }
 

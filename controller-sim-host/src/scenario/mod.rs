@@ -30,6 +30,7 @@ mod signals;
 mod sources;
 mod suggest;
 mod surroundings;
+mod sweep;
 mod syntax;
 mod table;
 mod texts;

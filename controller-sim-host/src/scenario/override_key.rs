@@ -86,6 +86,16 @@ impl Edit {
         }
     }
 
+    /// The length of what an application puts in.
+    pub(super) fn length(&self, value: &str) -> usize {
+        self.before.len() + value.len() + self.after.len()
+    }
+
+    /// Whether the key is not written yet.
+    pub(super) fn adds_key(&self) -> bool {
+        !self.before.is_empty()
+    }
+
     /// The text with `value`, which must be TOML.
     pub(super) fn apply(&self, text: &str, value: &str) -> String {
         let (start, end) = (text.get(..self.span.start), text.get(self.span.end..));

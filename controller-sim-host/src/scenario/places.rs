@@ -21,11 +21,13 @@ pub(super) struct Places {
     settings: Vec<(Param, Setting)>,
     silent: Vec<Param>,
     a2: Option<Setting>,
+    /// Those of the controller inside of a cascade.
+    pub(super) inner: Option<Box<Places>>,
 }
 
 impl Places {
     pub(super) fn new(whole: Range<usize>) -> Self {
-        Self { whole, settings: Vec::new(), silent: Vec::new(), a2: None }
+        Self { whole, settings: Vec::new(), silent: Vec::new(), a2: None, inner: None }
     }
 
     /// `param` was set as `name` at `span`.

@@ -57,16 +57,23 @@ fn warn_of_start(
     places: &Places,
     log: &Log<'_>,
 ) {
-    let span = |params: [Param; 2]| {
+    let span_in = |places: &Places, params: [Param; 2]| {
         let setting = params.into_iter().find_map(|param| places.of(param));
         setting.map_or(places.whole.clone(), |setting| setting.span.clone())
     };
+    let span = |params| span_in(places, params);
     let (limits, config) = ([spec.config.limits.lo, spec.config.limits.hi], &spec.config);
-    let output = initial_output(scenario);
-    if is_outside(output, limits) {
-        let what = format!("the output {} that holds the initial state", show_short(output));
-        let message = outside(&what, "limits", spec, limits, "the run does not start at rest");
-        log.warn(Fault::new(code::CLAMPED, span([Param::OutputLo, Param::OutputHi]), message));
+    let [own, driving] = initial_outputs(scenario, spec);
+    let inner = spec.secondary.as_deref().zip(places.inner.as_deref());
+    let inner = inner.map(|(spec, places)| (spec, places, driving));
+    for (spec, places, output) in [(spec, places, own)].into_iter().chain(inner) {
+        let limits = [spec.config.limits.lo, spec.config.limits.hi];
+        if is_outside(output, limits) {
+            let what = format!("the output {} that holds the initial state", show_short(output));
+            let message = outside(&what, "limits", spec, limits, "the run does not start at rest");
+            let place = span_in(places, [Param::OutputLo, Param::OutputHi]);
+            log.warn(Fault::new(code::CLAMPED, place, message));
+        }
     }
     let at_start = scenario.initial.setpoint;
     let measurement = [config.measurement_lo, config.measurement_hi];
@@ -194,8 +201,18 @@ fn outside(what: &str, key: &str, spec: &ControllerSpec, [lo, hi]: [f64; 2], eff
     )
 }
 
-/// The output at rest at the initial set-point \[u\].
-fn initial_output(scenario: &Scenario) -> f64 {
-    let static_gain = if scenario.plant.integrators() > 0 { f64::INFINITY } else { scenario.plant.gain() };
-    scenario.initial.setpoint / static_gain - scenario.initial.disturbance
+/// The outputs at rest at the initial set-point: of the controller itself, and of the one that drives the actuator \[u\].
+fn initial_outputs(scenario: &Scenario, spec: &ControllerSpec) -> [f64; 2] {
+    let at_rest = |integrators: usize, gain: f64| {
+        if integrators > 0 { 0.0 } else { scenario.initial.setpoint / gain }
+    };
+    let plant = &scenario.plant;
+    let driving = at_rest(plant.integrators(), plant.gain()) - scenario.initial.disturbance;
+    match &scenario.inner_plant {
+        Some(inner) if spec.secondary.is_some() => {
+            let outer = plant.integrators().saturating_sub(inner.integrators());
+            [at_rest(outer, plant.gain() / inner.gain()), driving]
+        }
+        _ => [driving; 2],
+    }
 }

@@ -7,6 +7,7 @@ use super::files::NoFiles;
 use super::include::{self, Roots};
 use super::library::Library;
 use super::log::{Log, MOST as MOST_FAULTS};
+use super::plants::Plant;
 use super::sources::Sources;
 use super::table::Table;
 use super::trial::{self, Context};
@@ -59,12 +60,14 @@ pub struct Read {
 /// ```
 pub fn read(text: &str, precision: Precision) -> Result<Read, Vec<Fault>> {
     let library = Library::new(&NoFiles);
-    read_one(&Input { text, replaced: None, precision, library: &library, takes_sweep: false })
+    read_one(&Input { name: "", text, replaced: None, precision, library: &library, takes_sweep: false })
 }
 
 /// What one case is read from.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Input<'a> {
+    /// What messages call it.
+    pub(super) name: &'a str,
     pub(super) text: &'a str,
     /// An included file and the text to take for it.
     pub(super) replaced: Option<(&'a str, &'a str)>,
@@ -87,7 +90,8 @@ pub(super) fn read_one(input: &Input<'_>) -> Result<Read, Vec<Fault>> {
     }
     let includes = include::load(document.get_ref(), text, input.replaced, input.library);
     let mut found: Vec<_> = includes.iter().filter(|include| include.text.is_ok()).collect();
-    let sources = Sources::new(text, found.iter().filter_map(|include| include.text.clone().ok()));
+    let sources =
+        Sources::new(input.name, text, found.iter().filter_map(|include| include.text.clone().ok()));
     let mut documents: Vec<_> =
         sources.included().map(|(at, part)| (at, DeTable::parse_recoverable(&part.text))).collect();
     let mut incomplete = found.len() < includes.len();
@@ -107,6 +111,7 @@ pub(super) fn read_one(input: &Input<'_>) -> Result<Read, Vec<Fault>> {
     let included =
         documents.iter().map(|(at, (document, _))| Table::root(document.get_ref(), *at, &log)).collect();
     let roots = Roots { own, included };
+    incomplete |= roots.own.items("include").iter().any(|item| !item.value.is_str());
     let about_includes = roots.own.span("include");
     include::check(&roots, &includes, &found);
     let scenario = read_roots(roots, input);
@@ -167,9 +172,9 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
         duration: run.duration,
         library: input.library,
     };
-    let mut drafts = read_controllers(&roots, &context);
+    let mut drafts = read_controllers(&roots, &context, plant.as_ref());
     let controllers: Vec<_> = drafts.iter().map(Draft::spec).collect();
-    let places: Vec<_> = drafts.iter().map(|draft| draft.places.clone()).collect();
+    let places: Vec<_> = drafts.iter().map(Draft::all_places).collect();
     let events = events::read(roots.of("event"), &mut drafts, &context);
     roots.finish();
     if log.count() > 0 {
@@ -201,6 +206,7 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
 }
 
 fn refuse_sweep(own: &Table<'_>, input: &Input<'_>) {
+    // The caller has read it when it takes it.
     if let (Some(span), false) = (own.key_span("sweep"), input.takes_sweep) {
         let message = "a sweep has several cases, and a single one is read here";
         own.log.fault(Fault::new(code::NOT_SUPPORTED, span, message).help("take the sweep away"));
@@ -208,16 +214,17 @@ fn refuse_sweep(own: &Table<'_>, input: &Input<'_>) {
 }
 
 /// The included controllers first, in the order of the files.
-fn read_controllers(roots: &Roots<'_>, context: &Context<'_>) -> Vec<Draft> {
+fn read_controllers(roots: &Roots<'_>, context: &Context<'_>, plant: Option<&Plant>) -> Vec<Draft> {
     let log = roots.own.log;
-    if roots.all().all(|table| table.span("controller").is_none()) {
+    // What an included file lacks was said of it.
+    if roots.included.is_empty() && roots.own.span("controller").is_none() {
         roots.own.missing("controller", "at least one `[[controller]]`, with a `name` and a `pid`");
     }
     let mut drafts: Vec<Draft> = Vec::new();
     for table in roots.all().flat_map(|table| table.tables("controller")) {
         let before = log.count();
         let draft = Draft::read(table);
-        trial::check(&draft, context, log, before);
+        check_laws(&draft, context, plant, log, before);
         let twin = drafts
             .iter()
             .find(|other| other.name() == draft.name())
@@ -230,4 +237,22 @@ fn read_controllers(roots: &Roots<'_>, context: &Context<'_>) -> Vec<Draft> {
         drafts.push(draft);
     }
     drafts
+}
+
+/// Checks a controller, and the one inside of it, each against what it drives.
+fn check_laws(draft: &Draft, context: &Context<'_>, plant: Option<&Plant>, log: &Log<'_>, before: usize) {
+    let Some((secondary, place)) = &draft.secondary else {
+        trial::check(draft, context, log, before);
+        return;
+    };
+    let parts = plant.and_then(|plant| plant.parts.clone());
+    if plant.is_some() && parts.is_none() {
+        let message = "a secondary controller needs the part of the plant that it controls";
+        let help = "write that part in `[plant]`: `inner = \"1/(1+0.1*s)\"`; the other keys there are the part behind it";
+        log.fault(Fault::new(code::CONFLICT, place.clone(), message).help(help));
+    }
+    let [inner, outer] = parts.map_or([None, None], |parts| parts.map(Some));
+    trial::check(secondary, &Context { plant: inner, ..context.clone() }, log, before);
+    // Behind a closed inner loop, which follows its set-point, only the outer part is left.
+    trial::check(draft, &Context { plant: outer, ..context.clone() }, log, before);
 }

@@ -9,13 +9,19 @@ use std::sync::Arc;
 /// The whole, and where its parts begin.
 #[derive(Debug)]
 pub(super) struct Sources<'a> {
+    /// What the scenario itself is called.
+    name: &'a str,
     whole: Cow<'a, str>,
     /// The included texts with their offsets, in order.
     included: Vec<(usize, Arc<SourceText>)>,
 }
 
 impl<'a> Sources<'a> {
-    pub(super) fn new(own: &'a str, included: impl IntoIterator<Item = Arc<SourceText>>) -> Self {
+    pub(super) fn new(
+        name: &'a str,
+        own: &'a str,
+        included: impl IntoIterator<Item = Arc<SourceText>>,
+    ) -> Self {
         let mut whole = Cow::Borrowed(own);
         let mut parts = Vec::new();
         for source in included {
@@ -25,7 +31,7 @@ impl<'a> Sources<'a> {
             parts.push((whole.len(), Arc::clone(&source)));
             whole.push_str(&source.text);
         }
-        Self { whole, included: parts }
+        Self { name, whole, included: parts }
     }
 
     /// All texts as one.
@@ -67,8 +73,8 @@ impl<'a> Sources<'a> {
         let offset = part.map_or(0, |(offset, _)| *offset);
         let before = self.whole.get(offset..related.span.start).unwrap_or("");
         let line = 1 + before.matches('\n').count();
-        let name = part.map_or("the scenario".to_owned(), |(_, source)| format!("`{}`", source.name));
-        let place = format!("{}: line {line} of {name}", related.message);
+        let name = part.map_or(self.name, |(_, source)| &source.name);
+        let place = format!("{}: line {line} of `{name}`", related.message);
         help.map_or_else(|| place.clone(), |help| format!("{help}; {place}"))
     }
 }
