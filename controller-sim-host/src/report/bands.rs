@@ -2,6 +2,7 @@
 
 use super::panels::Loop;
 use super::words;
+use crate::simulate::Record;
 use controller_core::{Mode, Status};
 
 /// A row of the bands of one controller.
@@ -9,8 +10,6 @@ use controller_core::{Mode, Status};
 pub(super) struct Row {
     /// What it shows.
     pub(super) label: &'static str,
-    /// How its blocks look.
-    pub(super) class: &'static str,
     /// Its blocks.
     pub(super) blocks: Vec<Block>,
 }
@@ -31,6 +30,8 @@ pub(super) struct Bands {
     /// Its place in the order of controllers.
     pub(super) index: usize,
     pub(super) name: String,
+    /// The only mode, when there is nothing else to show: it needs no band.
+    pub(super) always: Option<&'static str>,
     /// Auto first, so that a short time in another mode lies above it.
     pub(super) modes: Vec<Block>,
     /// One for each status that occurs.
@@ -70,34 +71,42 @@ const MODES: [(Mode, &str); 7] = [
     (Mode::Fallback, "m-fallback"),
 ];
 
-/// The bands of a controller.
-pub(super) fn bands(l: &Loop<'_>) -> Bands {
-    let record = l.record;
+/// The bands of a controller; in a cascade those of the inner loop after them.
+pub(super) fn bands(l: &Loop<'_>) -> Vec<Bands> {
+    let mut list = vec![of(l.index, l.spec.name.clone(), l.record)];
+    list.extend(l.inner.map(|record| of(l.index, format!("{}, inner loop", l.spec.name), record)));
+    list
+}
+
+fn of(index: usize, name: String, record: &Record) -> Bands {
     let mut modes = Vec::new();
     for (mode, class) in MODES {
-        runs(
-            record.len(),
-            |i| record.has_mode(i, mode),
-            |first, end| {
-                modes.push(Block { first, end, text: words::mode(mode), class });
-            },
-        );
+        let has = |i| record.has_mode(i, mode);
+        runs(record.len(), has, |first, end| {
+            modes.push(Block { first, end, text: words::mode(mode), class });
+        });
     }
     let mut status = Vec::new();
     for (bit, label, class) in ROWS {
         let mut blocks = Vec::new();
-        runs(
-            record.len(),
-            |i| record.has_status(i, bit),
-            |first, end| {
-                blocks.push(Block { first, end, text: "", class });
-            },
-        );
-        if !blocks.is_empty() {
-            status.push(Row { label, class, blocks });
+        let has = |i| record.has_status(i, bit);
+        runs(record.len(), has, |first, end| blocks.push(Block { first, end, text: "", class }));
+        // The mode says it already.
+        let said = bit == Status::FALLBACK && blocks.iter().all(|b| modes.iter().any(|m| is_fallback(m, b)));
+        if !blocks.is_empty() && !said {
+            status.push(Row { label, blocks });
         }
     }
-    Bands { index: l.index, name: l.spec.name.clone(), modes, status }
+    let always = match &*modes {
+        [only] if only.first == 0 && only.end == record.len() && status.is_empty() => Some(only.text),
+        _ => None,
+    };
+    let modes = if always.is_some() { Vec::new() } else { modes };
+    Bands { index, name, always, modes, status }
+}
+
+fn is_fallback(mode: &Block, status: &Block) -> bool {
+    mode.text == words::mode(Mode::Fallback) && (mode.first, mode.end) == (status.first, status.end)
 }
 
 /// Gives every longest run of bands that `holds` is true for.

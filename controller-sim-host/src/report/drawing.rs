@@ -21,7 +21,9 @@ const COLUMNS: f64 = 1000.0;
 /// Height of a line of event numbers \[px\].
 const MARK: f64 = 18.0;
 /// Height of a panel's title \[px\].
-const TITLE: f64 = 22.0;
+const TITLE: f64 = 27.0;
+/// Height of a line with the name of a controller \[px\].
+const NAME: f64 = 19.0;
 /// Height of a band of modes and of one of status \[px\].
 const MODE: f64 = 15.0;
 const STATUS: f64 = 9.0;
@@ -30,7 +32,7 @@ const STATUS_PITCH: f64 = 14.0;
 /// Width of a character in a band \[px\], and the widths of a telephone and of a wide page.
 const CHARACTER: f64 = 6.2;
 const NARROW: f64 = 300.0;
-const WIDE: f64 = 640.0;
+const WIDE: f64 = 590.0;
 
 /// A picture without its frame.
 pub(super) struct Drawing {
@@ -45,7 +47,7 @@ pub(super) fn loops<'a>(chapter: &Chapter<'a>) -> Vec<Loop<'a>> {
     let both = chapter.scenario.controllers.iter().zip(&chapter.result.controllers);
     let recorded = both.enumerate().filter_map(|(index, (spec, result))| {
         let record = result.record.as_ref().filter(|record| !record.is_empty())?;
-        Some(Loop { index, spec, record })
+        Some(Loop { index, spec, record, inner: result.inner.as_ref() })
     });
     recorded.collect()
 }
@@ -70,7 +72,7 @@ pub(super) fn draw(chapter: &Chapter<'_>, loops: &[Loop<'_>]) -> Drawing {
     let axis = Axis::of_time(time.0, time.1, 6);
     let marks = marks(chapter.scenario, axis.range());
     let panels = panels(chapter.scenario, loops);
-    let bands: Vec<Bands> = loops.iter().map(bands).collect();
+    let bands: Vec<Bands> = loops.iter().flat_map(bands).collect();
 
     let top = MARK * rows(&marks) as f64;
     let mut y = top + 2.0;
@@ -114,7 +116,7 @@ fn draw_panel(panel: &Panel<'_>, loops: &[Loop<'_>], time: (f64, f64), axis: &Ax
                 line x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(top)) y2=(pixel(bottom)) {}
             }
         }
-        text class="title" x=(pixel(-LEFT)) y=(pixel(top - 7.0)) { (panel.title) (values.unit(&panel.unit)) }
+        text class="title" x=(pixel(-LEFT)) y=(pixel(top - 9.0)) { (panel.title) (values.unit(&panel.unit)) }
         @for tick in &values.ticks {
             text class="n" x="-7" y=(pixel(bottom - tick.share * panel.height + 4.0)) { (tick.label) }
         }
@@ -123,9 +125,8 @@ fn draw_panel(panel: &Panel<'_>, loops: &[Loop<'_>], time: (f64, f64), axis: &Ax
             @for level in &panel.levels { (draw_level(level, &plane)) }
             @for trace in &panel.traces {
                 @let paths = plane.draw(trace.envelope, trace.between);
-                @let look = look(trace.look);
-                @if !paths.area.is_empty() { path class={ "a " (look) } d=(paths.area) {} }
-                path class={ "l " (look) } d=(paths.line) {}
+                @if !paths.area.is_empty() { path class={ "a " (tint(trace.look)) } d=(paths.area) {} }
+                path class={ "l " (look(trace.look)) } d=(paths.line) {}
             }
         }
         line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
@@ -156,9 +157,8 @@ fn draw_marks(marks: &[Mark], bottom: f64) -> Markup {
             }
             @for (mark, row) in marks.iter().filter_map(|mark| mark.row.map(|row| (mark, row))) {
                 @let y = top(row) + 9.0;
-                // A circle stands beside its line at the left edge, so that none is cut off.
-                circle cx=(percent(mark.share)) cy=(pixel(y)) r="8" {}
-                text class="number" x=(percent(mark.share)) y=(pixel(y + 4.0)) { (mark.number) }
+                circle class=[mark.wide.then_some("wide")] cx=(percent(mark.share)) cy=(pixel(y)) r="8" {}
+                text class={ "number" @if mark.wide { " wide" } } x=(percent(mark.share)) y=(pixel(y + 4.0)) { (mark.number) }
                 @if mark.named {
                     svg class="p" x=(percent(mark.share)) {
                         text class="name wide" x="13" y=(pixel(y + 4.0)) { (mark.text) }
@@ -176,18 +176,24 @@ fn time_axis(axis: &Axis, y: f64) -> Markup {
             line class="axis" x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(y)) y2=(pixel(y + 4.0)) {}
             text class="t" x=(percent(tick.share)) y=(pixel(y + 17.0)) { (tick.label) }
         }
+        @for share in &axis.between {
+            line class="axis" x1=(percent(*share)) x2=(percent(*share)) y1=(pixel(y)) y2=(pixel(y + 2.5)) {}
+        }
         text class="title t" x="50%" y=(pixel(y + 31.0)) { "time t" (axis.unit("s")) }
     }
 }
 
 fn height_of(bands: &Bands) -> f64 {
-    18.0 + MODE + 4.0 + STATUS_PITCH * bands.status.len() as f64
+    if bands.always.is_some() {
+        return NAME;
+    }
+    NAME + MODE + 4.0 + STATUS_PITCH * bands.status.len() as f64
 }
 
 fn draw_bands(bands: &Bands, loops: &[Loop<'_>], time: (f64, f64), top: f64) -> Markup {
     let Some(record) = loops.first().map(|l| l.record) else { return html! {} };
     let plane = Plane { record, time, share: &|x| x, size: (COLUMNS, MODE) };
-    let mode = top + 18.0;
+    let mode = top + NAME;
     let mut y = mode + MODE + 4.0;
     let status: Vec<(f64, &super::bands::Row)> = bands
         .status
@@ -201,8 +207,13 @@ fn draw_bands(bands: &Bands, loops: &[Loop<'_>], time: (f64, f64), top: f64) -> 
     html! {
         line class={ "l " (controller(bands.index)) } x1=(pixel(-LEFT)) x2=(pixel(-LEFT + 24.0))
             y1=(pixel(top + 9.0)) y2=(pixel(top + 9.0)) {}
-        text class="title" x=(pixel(-LEFT + 30.0)) y=(pixel(top + 13.0)) { (words::cut(&bands.name, 44)) }
-        text class="n" x="-7" y=(pixel(mode + 11.5)) { "mode" }
+        text class="title" x=(pixel(-LEFT + 30.0)) y=(pixel(top + 13.0)) {
+            (words::cut(&bands.name, 44))
+            @if let Some(mode) = bands.always { tspan class="plain" { ": " (mode) " throughout" } }
+        }
+        @if bands.always.is_none() {
+            text class="n small" x="-7" y=(pixel(mode + 11.0)) { "mode" }
+        }
         (blocks(&bands.modes, &plane, mode, MODE))
         @for block in &bands.modes {
             @let (left, right) = (plane.span(block.first).0, plane.span(block.end - 1).1);
@@ -252,9 +263,18 @@ fn blocks(list: &[Block], plane: &Plane<'_>, top: f64, height: f64) -> Markup {
 pub(super) fn look(look: Look) -> String {
     match look {
         Look::Reference => "ref".to_owned(),
+        Look::Asked(index) => format!("asked {}", colour(index)),
         Look::Controller(index) => controller(index),
         Look::Faint(index) => format!("faint {}", colour(index)),
         Look::Applied(index) => format!("applied {}", colour(index)),
+    }
+}
+
+/// The classes of an area: without the pattern, which would leave gaps in what is covered.
+fn tint(look_of: Look) -> String {
+    match look_of {
+        Look::Controller(index) => colour(index),
+        other => look(other),
     }
 }
 

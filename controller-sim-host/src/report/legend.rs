@@ -1,7 +1,7 @@
 //! Which line is which.
 
 use super::drawing::look;
-use super::panels::{Look, Loop, shows_applied, shows_measurement};
+use super::panels::{Look, Loop, panels, shows_applied, shows_measurement};
 use crate::scenario::Scenario;
 use maud::{Markup, html};
 
@@ -14,7 +14,9 @@ pub(super) struct Entry {
 
 /// Everything that needs to be told apart.
 pub(super) fn entries(scenario: &Scenario, loops: &[Loop<'_>]) -> Vec<Entry> {
-    let mut list = vec![Entry { look: Look::Reference, text: "r, d".to_owned() }];
+    let has_disturbance = panels(scenario, loops).iter().any(|panel| panel.title.starts_with("Disturbance"));
+    let text = if has_disturbance { "set-point r, disturbance d" } else { "set-point r" };
+    let mut list = vec![Entry { look: Look::Reference, text: text.to_owned() }];
     list.extend(
         loops.iter().map(|l| Entry { look: Look::Controller(l.index), text: l.spec.name.trim().to_owned() }),
     );

@@ -17,6 +17,8 @@ pub(super) struct Mark {
     pub(super) text: String,
     /// Line of the number from above; `None`: no room for it.
     pub(super) row: Option<usize>,
+    /// There is room for the number on a wide page only.
+    pub(super) wide: bool,
     /// There is room for its name beside the number on a wide page.
     pub(super) named: bool,
 }
@@ -24,13 +26,15 @@ pub(super) struct Mark {
 /// The picture's width \[px\] on a telephone: there the numbers must not touch.
 const NARROW: f64 = 300.0;
 /// The picture's width \[px\] from which on names are shown.
-const WIDE: f64 = 640.0;
+const WIDE: f64 = 590.0;
 /// Width of a number \[px\].
 const NUMBER: f64 = 20.0;
 /// Width of a character of a name \[px\].
 const CHARACTER: f64 = 6.3;
 /// Most lines of numbers.
 const ROWS: usize = 3;
+/// Most marks; of more events those stay that are not hidden behind others.
+const MOST: f64 = 400.0;
 /// Longest name in a picture.
 const NAME: usize = 34;
 
@@ -40,8 +44,13 @@ pub(super) fn marks(scenario: &Scenario, time: RangeInclusive<f64>) -> Vec<Mark>
     let mut marks: Vec<Mark> = Vec::new();
     // Where each row is free again, on a narrow page.
     let mut free = [f64::NEG_INFINITY; ROWS];
-    for (index, event) in scenario.events.iter().enumerate().filter(|(_, event)| time.contains(&event.at)) {
+    let seen = || scenario.events.iter().enumerate().filter(|(_, event)| time.contains(&event.at));
+    let crowded = seen().count() as f64 > MOST;
+    for (index, event) in seen() {
         let share = (event.at - from) / (to - from);
+        if crowded && marks.last().is_some_and(|last| share < last.share + 1.0 / MOST) {
+            continue;
+        }
         let left = share * NARROW;
         let row = free.iter().position(|free| left >= *free);
         let width = NUMBER + if index >= 99 { 8.0 } else { 0.0 };
@@ -49,12 +58,21 @@ pub(super) fn marks(scenario: &Scenario, time: RangeInclusive<f64>) -> Vec<Mark>
             free[row] = left + width;
         }
         let text = words::cut(&words::event(scenario, event), NAME);
-        marks.push(Mark { number: index + 1, share, at: event.at, text, row, named: false });
+        marks.push(Mark { number: index + 1, share, at: event.at, text, row, wide: false, named: false });
+    }
+    for index in 0..marks.len() {
+        let apart = |other: &Mark| (other.share - marks[index].share).abs() * WIDE >= NUMBER + 4.0;
+        let free = |row: &usize| marks.iter().filter(|other| other.row == Some(*row)).all(apart);
+        if marks[index].row.is_none()
+            && let Some(row) = (0..ROWS).find(free)
+        {
+            (marks[index].row, marks[index].wide) = (Some(row), true);
+        }
     }
     for index in 0..marks.len() {
         let mark = &marks[index];
         let next = marks[index + 1..].iter().find(|other| other.row == mark.row && mark.row.is_some());
-        let end = mark.share * WIDE + NUMBER + mark.text.chars().count() as f64 * CHARACTER;
+        let end = 4.0 + mark.share * WIDE + NUMBER + mark.text.chars().count() as f64 * CHARACTER;
         marks[index].named = mark.row.is_some() && end < next.map_or(WIDE, |next| next.share * WIDE);
     }
     marks

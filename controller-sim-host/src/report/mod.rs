@@ -5,15 +5,19 @@
 //! metrics and the parameters, and has the text of the scenario in it to repeat the run.
 
 mod bands;
+mod chapter;
 mod describe;
 mod drawing;
 mod legend;
 mod marks;
+mod overview;
 mod page;
 mod panels;
+mod parameters;
 mod path;
 mod scale;
 mod standalone;
+mod tables;
 mod words;
 
 use crate::scenario::{Fault, Scenario};

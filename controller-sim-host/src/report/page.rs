@@ -1,9 +1,8 @@
-//! The page.
+//! The page: what was run, what came of it, and how to repeat it.
 
 use super::Chapter;
-use super::describe::{description, title};
-use super::drawing::{draw, loops, pixel};
-use super::legend::{entries, sample};
+use super::chapter;
+use super::overview::{Sweep, sweeps};
 use super::standalone::STYLE;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -11,10 +10,12 @@ const PAGE_STYLE: &str = include_str!("style/page.css");
 
 /// The page as text.
 pub(super) fn page(chapters: &[Chapter<'_>], command: &str) -> String {
+    let several = chapters.len() > 1;
     let heading = match chapters {
         [only] => only.title(),
         several => format!("Simulation report: {} runs", several.len()),
     };
+    let sweeps = sweeps(chapters);
     let text = html! {
         (DOCTYPE)
         html lang="en" {
@@ -26,13 +27,27 @@ pub(super) fn page(chapters: &[Chapter<'_>], command: &str) -> String {
                 style { (PreEscaped(STYLE)) (PreEscaped(PAGE_STYLE)) }
             }
             body {
-                header { h1 { (heading) } }
+                header {
+                    p class="kind" { "Simulation of control loops" }
+                    h1 { (heading) }
+                }
+                @if several { (contents(chapters, &sweeps)) }
                 main {
-                    @for (index, chapter) in chapters.iter().enumerate() { (section(index, chapter)) }
+                    @for (index, sweep) in sweeps.iter().enumerate() {
+                        @let id = format!("sweep-{}", index + 1);
+                        section id=(id) aria-labelledby={ (id) "-heading" } {
+                            h2 id={ (id) "-heading" } { (sweep.name()) }
+                            (sweep.show(chapters, &id))
+                        }
+                    }
+                    @for index in 0..chapters.len() { (chapter::show(index, chapters)) }
                 }
                 footer {
-                    p { "Made by controller-sim " (env!("CARGO_PKG_VERSION")) " with" }
-                    pre tabindex="0" role="region" aria-label="Command" { code { (command) } }
+                    h2 id="command" { "How this page was made" }
+                    div class="scroll" role="region" tabindex="0" aria-labelledby="command" {
+                        pre { code { (command) } }
+                    }
+                    p { "controller-sim " (env!("CARGO_PKG_VERSION")) }
                 }
             }
         }
@@ -40,33 +55,20 @@ pub(super) fn page(chapters: &[Chapter<'_>], command: &str) -> String {
     text.into_string()
 }
 
-fn section(index: usize, chapter: &Chapter<'_>) -> Markup {
+fn contents(chapters: &[Chapter<'_>], sweeps: &[Sweep<'_>]) -> Markup {
     html! {
-        section id={ "run-" (index + 1) } {
-            (picture(index, chapter))
-        }
-    }
-}
-
-fn picture(index: usize, chapter: &Chapter<'_>) -> Markup {
-    let loops = loops(chapter);
-    let drawing = draw(chapter, &loops);
-    let id = format!("figure-{}", index + 1);
-    html! {
-        figure class="plot" id=(id) {
-            ul class="legend" {
-                @for entry in entries(chapter.scenario, &loops) {
-                    li {
-                        svg width="30" height="10" aria-hidden="true" { (sample(&entry, "5")) }
-                        span { (entry.text) }
+        nav aria-label="Contents" {
+            @if !sweeps.is_empty() {
+                ul {
+                    @for (index, sweep) in sweeps.iter().enumerate() {
+                        li { a href={ "#sweep-" (index + 1) } { (sweep.name()) } }
                     }
                 }
             }
-            svg class="canvas" height=(pixel(drawing.height)) role="img"
-                aria-labelledby={ (id) "-title " (id) "-desc" } {
-                title id={ (id) "-title" } { (title(chapter, &loops)) }
-                desc id={ (id) "-desc" } { (description(chapter, &loops)) }
-                (drawing.content)
+            ol {
+                @for (index, chapter) in chapters.iter().enumerate() {
+                    li { a href={ "#run-" (index + 1) } { (chapter.title()) } }
+                }
             }
         }
     }

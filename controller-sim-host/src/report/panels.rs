@@ -14,11 +14,18 @@ pub(super) struct Loop<'a> {
     pub(super) spec: &'a ControllerSpec,
     /// Its signals.
     pub(super) record: &'a Record,
+    /// Those of the loop inside of a cascade.
+    pub(super) inner: Option<&'a Record>,
 }
 
 impl Loop<'_> {
+    /// Who gives the output: in a cascade the controller of the inner loop.
+    fn acting(&self) -> &ControllerSpec {
+        self.spec.secondary.as_deref().unwrap_or(self.spec)
+    }
+
     fn has_compensator(&self) -> bool {
-        self.spec.compensator != CompensatorSpec::None
+        self.acting().compensator != CompensatorSpec::None
     }
 }
 
@@ -27,6 +34,8 @@ impl Loop<'_> {
 pub(super) enum Look {
     /// Thin and dark: what is asked for, what disturbs.
     Reference,
+    /// Thin, in the colour of a controller: what it asks of its inner loop.
+    Asked(usize),
     /// The line of a controller.
     Controller(usize),
     /// Faint, in the colour of a controller: its measurement with all that a sensor does.
@@ -62,6 +71,8 @@ pub(super) struct Panel<'a> {
     pub(super) height: f64,
     pub(super) traces: Vec<Trace<'a>>,
     pub(super) levels: Vec<Level>,
+    /// What is smaller than this is rounding: it is not spread over the whole height.
+    pub(super) least: f64,
 }
 
 impl Panel<'_> {
@@ -71,14 +82,21 @@ impl Panel<'_> {
             Some(a.map_or((lo, hi), |(l, h)| (l.min(lo), h.max(hi))))
         };
         let signals = self.traces.iter().filter_map(|t| t.envelope.range()).fold(None, join);
-        self.levels.iter().map(|level| (level.value, level.value)).fold(signals, join)
+        let (lo, hi) = self.levels.iter().map(|level| (level.value, level.value)).fold(signals, join)?;
+        let missing = (self.least - (hi - lo)).max(0.0);
+        Some((lo - missing / 2.0, hi + missing / 2.0))
     }
 }
 
 /// The panels of a run, from above.
 pub(super) fn panels<'a>(scenario: &'a Scenario, loops: &[Loop<'a>]) -> Vec<Panel<'a>> {
     let [y, u] = [&scenario.units.y, &scenario.units.u].map(|unit| words::unit(unit));
-    let mut list = vec![output(scenario, loops, y), control(scenario, loops, u.clone())];
+    let mut list = vec![output(scenario, loops, y)];
+    list.extend(inner(loops));
+    list.push(control(scenario, loops, u.clone()));
+    // A disturbance is a small difference of large outputs.
+    let outputs = loops.iter().filter_map(|l| l.record.u.range());
+    let least = 1e-9 * outputs.fold(0.0_f64, |size, (lo, hi)| size.max(lo.abs()).max(hi.abs()));
     let compensated: Vec<Loop<'_>> = loops.iter().copied().filter(Loop::has_compensator).collect();
     let disturbed = scenario.initial.disturbance != 0.0
         || scenario.events.iter().flat_map(|e| &e.changes).any(|c| matches!(c, Change::Disturbance(_)));
@@ -93,7 +111,7 @@ pub(super) fn panels<'a>(scenario: &'a Scenario, loops: &[Loop<'a>]) -> Vec<Pane
             0 => "Disturbance d",
             _ => "Disturbance d, estimate d_hat",
         };
-        list.push(Panel { title, unit: u.clone(), height: 120.0, traces, levels: Vec::new() });
+        list.push(Panel { title, unit: u.clone(), height: 120.0, traces, levels: Vec::new(), least });
     }
     if !compensated.is_empty() {
         let trace = |l: &Loop<'a>| Trace {
@@ -103,7 +121,7 @@ pub(super) fn panels<'a>(scenario: &'a Scenario, loops: &[Loop<'a>]) -> Vec<Pane
         };
         let traces = compensated.iter().map(trace).collect();
         let title = "Output of the disturbance block u_f";
-        list.push(Panel { title, unit: u, height: 100.0, traces, levels: Vec::new() });
+        list.push(Panel { title, unit: u, height: 100.0, traces, levels: Vec::new(), least });
     }
     list
 }
@@ -135,7 +153,36 @@ fn output<'a>(scenario: &'a Scenario, loops: &[Loop<'a>], unit: String) -> Panel
         between: Between::Moves,
         look: Look::Controller(l.index),
     }));
-    Panel { title: "Plant output y, set-point r", unit, height: 230.0, traces, levels: Vec::new() }
+    Panel {
+        title: "Plant output y, set-point r",
+        unit,
+        height: 230.0,
+        traces,
+        levels: Vec::new(),
+        least: 0.0,
+    }
+}
+
+/// What a cascade does between its two controllers.
+fn inner<'a>(loops: &[Loop<'a>]) -> Option<Panel<'a>> {
+    let mut traces = Vec::new();
+    for (l, record) in loops.iter().filter_map(|l| l.inner.map(|record| (l, record))) {
+        traces.push(Trace { envelope: &record.r, between: Between::Held, look: Look::Asked(l.index) });
+        traces.push(Trace {
+            envelope: &record.output,
+            between: Between::Moves,
+            look: Look::Controller(l.index),
+        });
+    }
+    let title = "Inner loop: output, set-point (thin)";
+    (!traces.is_empty()).then(|| Panel {
+        title,
+        unit: String::new(),
+        height: 140.0,
+        traces,
+        levels: Vec::new(),
+        least: 0.0,
+    })
 }
 
 fn control<'a>(scenario: &'a Scenario, loops: &[Loop<'a>], unit: String) -> Panel<'a> {
@@ -147,7 +194,8 @@ fn control<'a>(scenario: &'a Scenario, loops: &[Loop<'a>], unit: String) -> Pane
         }
         traces.push(held(&l.record.u, Look::Controller(l.index)));
     }
-    let mut panel = Panel { title: "Controller output u", unit, height: 160.0, traces, levels: Vec::new() };
+    let mut panel =
+        Panel { title: "Controller output u", unit, height: 160.0, traces, levels: Vec::new(), least: 0.0 };
     if let Some((lo, hi)) = panel.range() {
         // A limit far away would press the signals flat.
         let room = 0.25 * (hi - lo).max(1e-9 * lo.abs().max(hi.abs()));
@@ -211,13 +259,14 @@ fn own_limits(scenario: &Scenario, l: &Loop<'_>) -> Vec<Level> {
             list.push(Level { time: (at, scenario.duration), value, owner: None, label });
         }
     };
-    begin(0.0, l.spec);
+    begin(0.0, l.acting());
     for event in &scenario.events {
         for change in &event.changes {
             if let Change::Parameters(specs) = change
                 && let Some((_, spec)) = specs.iter().find(|(index, _)| *index == l.index)
             {
-                begin(sample_of(event.at, scenario.ts) as f64 * scenario.ts, spec);
+                let acting = spec.secondary.as_deref().unwrap_or(spec);
+                begin(sample_of(event.at, scenario.ts) as f64 * scenario.ts, acting);
             }
         }
     }

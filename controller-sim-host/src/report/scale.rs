@@ -8,6 +8,8 @@ const MOST: f64 = 1e300;
 const LEAST: f64 = 1e-290;
 /// A range this much smaller than its values is labelled as a difference from a round number.
 const CLOSE: f64 = 1e-4;
+/// Sizes that differ by more than this factor are shown by their ratios.
+const RATIO: f64 = 30.0;
 
 /// A labelled place on an axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,10 +27,14 @@ pub(super) struct Axis {
     hi: f64,
     /// Its ticks, from below.
     pub(super) ticks: Vec<Tick>,
+    /// Places of finer steps, without labels.
+    pub(super) between: Vec<f64>,
     /// Round number that the labels are counted from.
     origin: f64,
     /// Power of ten that the labels are multiplied by.
     power: i32,
+    /// Equal ratios are equally long.
+    ratios: bool,
 }
 
 impl Axis {
@@ -48,6 +54,29 @@ impl Axis {
         Self::new(from, if to > from { to } else { from + 1.0 }, most)
     }
 
+    /// As [`of_values`](Self::of_values); numbers above 0 that are far apart stand by their ratios.
+    pub(super) fn of_sizes(range: Option<(f64, f64)>, most: usize) -> Self {
+        match range {
+            Some((lo, hi)) if lo >= 1e-99 && hi <= 1e99 && hi >= RATIO * lo => Self::by_ratio(lo, hi, most),
+            _ => Self::of_values(range, most),
+        }
+    }
+
+    fn by_ratio(lo: f64, hi: f64, most: usize) -> Self {
+        let (start, end) = (libm::log10(lo), libm::log10(hi));
+        let room = 0.06 * (end - start);
+        let (start, end) = (start - room, end + room);
+        let decades = (end.ceil() - start.floor()) as i32;
+        let every = 1.max(decades / most.max(1) as i32 + i32::from(decades % most.max(1) as i32 > 0));
+        let tick = |e: i32| Tick {
+            share: (f64::from(e) - start) / (end - start),
+            label: if (-3..5).contains(&e) { decimal(1, e) } else { format!("10{}", superscript(e)) },
+        };
+        let all = (start.floor() as i32..=end.ceil() as i32).filter(|e| e % every == 0).map(tick);
+        let ticks = all.filter(|tick| (0.0..=1.0).contains(&tick.share)).collect();
+        Self { lo: start, hi: end, ticks, between: Vec::new(), origin: 0.0, power: 0, ratios: true }
+    }
+
     fn new(lo: f64, hi: f64, most: usize) -> Self {
         let (size, span) = (lo.abs().max(hi.abs()), hi - lo);
         let origin = if span < CLOSE * size { rounded(lo + span / 2.0, exponent(span) + 1) } else { 0.0 };
@@ -62,12 +91,18 @@ impl Axis {
             share: ((i as f64 * step - start) / (end - start)).clamp(0.0, 1.0),
             label: decimal(i * mantissa, e - power),
         };
-        Self { lo, hi, ticks: (first..=last).map(tick).collect(), origin, power }
+        let ticks = (first..=last).map(tick).collect();
+        let parts = if mantissa == 2 { 4 } else { 5 };
+        let between = ((first - 1) * parts..(last + 1) * parts).filter(|j| j % parts != 0);
+        let between = between.map(|j| (j as f64 * step / parts as f64 - start) / (end - start));
+        let between = between.filter(|share| (0.0..=1.0).contains(share)).collect();
+        Self { lo, hi, ticks, between, origin, power, ratios: false }
     }
 
     /// The place of a value, 0 at the beginning of the axis and 1 at its end.
     pub(super) fn share(&self, value: f64) -> f64 {
-        (kept(value) - self.lo) / (self.hi - self.lo)
+        let value = if self.ratios { libm::log10(value) } else { kept(value) };
+        (value - self.lo) / (self.hi - self.lo)
     }
 
     /// What the axis covers.

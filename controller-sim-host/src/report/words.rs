@@ -6,10 +6,9 @@ use controller_core::Mode;
 /// Longest unit that is written out.
 const LONGEST_UNIT: usize = 20;
 
-/// A number of a scenario, as short as it was written.
+/// A number of a scenario, as short as it was written, with true minus signs.
 pub(super) fn number(x: f64) -> String {
-    // `f32` numbers that were widened would show digits nobody wrote; those of a scenario are `f64`.
-    show(x)
+    show(x).replace('-', "\u{2212}")
 }
 
 /// `text` with at most `most` characters.

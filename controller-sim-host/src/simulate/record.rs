@@ -107,7 +107,8 @@ impl Record {
     /// An empty record of what `view` shows of a run of `count` samples.
     #[must_use]
     pub fn new(view: View, ts: f64, count: u64) -> Self {
-        let sample = |t: f64| ((t / ts).max(0.0).floor() as u64).min(count);
+        // A time on the grid is that sample, although its quotient may be rounded to just below it.
+        let sample = |t: f64| (((t / ts) * (1.0 + 1e-9)).max(0.0).floor() as u64).min(count);
         let first_sample = sample(view.from);
         let shown = (sample(view.to).max(first_sample + 1)) - first_sample;
         let samples = shown.div_ceil(view.columns.max(1) as u64).max(1);
