@@ -51,13 +51,20 @@ fn bar(total: u64) -> ProgressBar {
     let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ");
     let style = style
         .with_key("speed", |state: &ProgressState, to: &mut dyn Write| {
-            let _ = write!(to, "{} samples/s", large(state.per_sec()));
+            let _ = write!(to, "{} samples/s", large(rate(state)));
         })
         .with_key("left", |state: &ProgressState, to: &mut dyn Write| {
-            let _ = write!(to, "{} left", time(state.eta()));
+            let rest = state.len().unwrap_or(0).saturating_sub(state.pos()) as f64;
+            let _ = write!(to, "{} left", time(rest / rate(state)));
         });
     bar.set_style(style);
-    bar
+    // The work began before the bar was shown.
+    bar.with_elapsed(AFTER)
+}
+
+/// Samples per second since the beginning: runs are even, and this does not jump.
+fn rate(state: &ProgressState) -> f64 {
+    state.pos() as f64 / state.elapsed().as_secs_f64().max(1e-3)
 }
 
 /// Three digits and a letter.
@@ -70,8 +77,9 @@ fn large(x: f64) -> String {
     }
 }
 
-fn time(left: Duration) -> String {
-    match left.as_secs() {
+/// Seconds as people say them; at most years.
+fn time(left: f64) -> String {
+    match left.clamp(0.0, 1e9).round() as u64 {
         s @ 0..60 => format!("{s} s"),
         s @ 60..3600 => format!("{} min {:02} s", s / 60, s % 60),
         s => format!("{} h {:02} min", s / 3600, s % 3600 / 60),
@@ -85,7 +93,7 @@ mod tests {
     #[test]
     fn rates_and_times_are_short() {
         assert_eq!([12.0, 4321.0, 1.234e6, 5.6e9].map(large), ["12", "4 k", "1.23 M", "5.60 G"]);
-        let shown = [5, 75, 3725].map(|s| time(Duration::from_secs(s)));
+        let shown = [5.2, 75.0, 3725.0].map(time);
         assert_eq!(shown, ["5 s", "1 min 15 s", "1 h 02 min"]);
     }
 

@@ -60,7 +60,7 @@ pub(super) fn run_inputs(
         for file in &written {
             let more = match file.kind {
                 "csv" | "parquet" => format!("{samples} samples"),
-                _ => format!("to look at it: {} {}", OPEN, super::quoting::quoted(&file.path)),
+                _ => format!("open it by: {} {}", OPEN, super::quoting::quoted(&file.path)),
             };
             print(&format!("wrote {}: {more}\n", file.path))?;
         }

@@ -44,7 +44,7 @@ fn several_files_are_chapters_in_order() {
         folder.done(&["run", "b.toml", "a.toml", "--svg", "p.svg", "--csv", "s.csv", "--report", "r.html"]);
     assert_eq!(folder.names(), ["a.toml", "b.toml", "p-1.svg", "p-2.svg", "r.html", "s.csv"]);
     for line in
-        ["wrote r.html: to look at it: ", "wrote p-1.svg: ", "wrote p-2.svg: ", "wrote s.csv: 9600 samples\n"]
+        ["wrote r.html: open it by: ", "wrote p-1.svg: ", "wrote p-2.svg: ", "wrote s.csv: 9600 samples\n"]
     {
         assert!(shown.contains(line), "`{line}` is not in:\n{shown}");
     }
