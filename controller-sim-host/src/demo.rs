@@ -83,24 +83,35 @@ pub fn all() -> impl Iterator<Item = BuiltIn> {
     scenarios.map(|&(path, text)| BuiltIn { path, text })
 }
 
-/// The built-in scenario `name`, or all of them, in order, whose names begin with `name-`. Folder and ending may be
-/// written.
+/// The built-in scenario `name`, or all of them, in order, whose names begin with `name-`. Folder, ending and leading zeros
+/// make no difference.
 ///
 /// # Errors
 /// The name that was probably meant, when nothing is called so.
 pub fn named(name: &str) -> Result<Vec<BuiltIn>, Option<&'static str>> {
     let file = name.strip_suffix(".toml").unwrap_or(name);
     let wanted = file.rsplit_once('/').map_or(file, |(_, file)| file);
-    if let Some(one) = all().find(|one| one.name() == wanted) {
-        return Ok(vec![one]);
-    }
-    let begins = |one: &BuiltIn| one.name().strip_prefix(wanted).is_some_and(|rest| rest.starts_with('-'));
+    let begins = |one: &BuiltIn| {
+        let mut parts = one.name().split('-');
+        wanted.split('-').all(|part| parts.next().is_some_and(|own| is_same_part(own, part)))
+    };
     let group: Vec<BuiltIn> = all().filter(begins).collect();
-    if wanted.is_empty() || group.is_empty() {
-        let names: Vec<&'static str> = all().map(|one| one.name()).collect();
-        return Err(closest(wanted, &names));
+    let count = wanted.split('-').count();
+    match group.iter().find(|one| one.name().split('-').count() == count) {
+        Some(exact) => Ok(vec![*exact]),
+        None if group.is_empty() => {
+            let names: Vec<&'static str> = all().map(|one| one.name()).collect();
+            Err(closest(wanted, &names))
+        }
+        None => Ok(group),
     }
-    Ok(group)
+}
+
+/// `4` is `04`: figures have numbers.
+fn is_same_part(a: &str, b: &str) -> bool {
+    let number =
+        |part: &str| part.bytes().all(|c| c.is_ascii_digit()).then(|| part.parse::<u32>().ok()).flatten();
+    a == b || number(a).is_some_and(|n| number(b) == Some(n))
 }
 
 /// Writes a text to `path`, or to the next free name when that exists and `force` is not given. Gives the path that was
@@ -164,6 +175,9 @@ mod tests {
         assert_eq!(names("demo"), Ok(vec!["demo"]));
         assert_eq!(names("scenarios/windup.toml"), Ok(vec!["windup"]));
         assert_eq!(names("wind-up"), Err(Some("windup")));
+        assert_eq!(names("de-fig-6"), Ok(vec!["de-fig-06"]));
+        let group = names("figures/dob-fig-4").expect("several");
+        assert!(group.len() > 1 && group.iter().all(|name| name.starts_with("dob-fig-04-")), "{group:?}");
         assert_eq!((names(""), names("wind")), (Err(None), Err(Some("windup"))));
     }
 }

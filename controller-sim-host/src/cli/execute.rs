@@ -5,7 +5,7 @@ use super::arguments::Options;
 use super::outputs::Targets;
 use super::progress;
 use super::scenarios::Input;
-use crate::output::{Complete, Problem, SampleFiles};
+use crate::output::{Columns, Complete, Problem, SampleFiles};
 use crate::scenario::{Case, Scenario};
 use crate::simulate::{COLUMNS, Control, RunError, RunOptions, RunResult, View, run_with, sample_of};
 use rayon::ThreadPoolBuilder;
@@ -127,7 +127,9 @@ fn into_files(
     control: &Control,
 ) -> Result<Outcome, Failure> {
     let (csv, parquet) = (targets.csv.as_ref(), targets.parquet.as_ref());
-    let mut files = SampleFiles::create(csv, parquet, jobs.len() > 1).map_err(Failure::internal)?;
+    let cascade = |job: &Job<'_>| job.scenario().controllers.iter().any(|one| one.secondary.is_some());
+    let columns = Columns { chapters: jobs.len() > 1, inner: jobs.iter().any(cascade) };
+    let mut files = SampleFiles::create(csv, parquet, columns).map_err(Failure::internal)?;
     let mut results = Vec::new();
     for job in jobs {
         files.chapter(&job.input.name, job.label());

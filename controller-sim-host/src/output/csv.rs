@@ -1,25 +1,25 @@
 //! Every sample of every controller as CSV.
 
+use super::samples::{Columns, NUMBERS};
 use crate::simulate::Sample;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Numbers of a line.
-const NUMBERS: usize = 8;
-
-/// Writes samples as lines as they come: `controller,t,r,y,u,applied,u_f,d_hat,d,mode,status`, and before these
-/// `scenario,case` when the file holds several chapters. Numbers in SI units with all their digits; a measurement that
-/// is bad is `NaN`; `status` is the number of its bits. Needs no memory that grows with the run.
+/// Writes samples as lines as they come: `controller,t,r,y,u,applied,u_f,d_hat,d,mode,status`, before these
+/// `scenario,case` and after `d` `inner_r,inner_y` when the [columns](Columns) ask for them. Numbers in SI units with all
+/// their digits; a measurement that is bad is `NaN`; `status` is the number of its bits; what a controller has not is
+/// empty. Needs no memory that grows with the run.
 #[derive(Debug)]
 pub struct CsvWriter<W> {
     to: W,
-    several: bool,
+    columns: Columns,
     /// The fields of the chapter, with the comma after them.
     chapter: String,
     /// The fields in front of the numbers.
     front: String,
     line: String,
-    cells: [Cell; NUMBERS],
+    cells: [Cell; NUMBERS.len()],
+    inner: [Cell; 2],
 }
 
 /// A number as text. Many signals stand still for long: their digits are found once.
@@ -46,16 +46,15 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// Whatever the writer cannot do.
-    pub fn new(mut to: W, several: bool) -> io::Result<Self> {
-        let front = if several { "scenario,case," } else { "" };
-        writeln!(to, "{front}controller,t,r,y,u,applied,u_f,d_hat,d,mode,status")?;
+    pub fn new(mut to: W, columns: Columns) -> io::Result<Self> {
+        writeln!(to, "{}", columns.names().collect::<Vec<_>>().join(","))?;
         let (chapter, front, line) = (String::new(), String::new(), String::new());
-        Ok(Self { to, several, chapter, front, line, cells: Default::default() })
+        Ok(Self { to, columns, chapter, front, line, cells: Default::default(), inner: Default::default() })
     }
 
     /// The samples of this scenario and case follow.
     pub fn chapter(&mut self, scenario: &str, case: Option<&str>) {
-        if self.several {
+        if self.columns.chapters {
             self.chapter = format!("{},{},", field(scenario), field(case.unwrap_or("")));
         }
     }
@@ -72,10 +71,16 @@ impl<W: Write> CsvWriter<W> {
     pub fn sample(&mut self, s: &Sample) -> io::Result<()> {
         self.line.clear();
         self.line.push_str(&self.front);
-        let numbers = [s.t, s.r, s.y, s.u, s.applied, s.u_f, s.d_hat, s.d];
+        let (numbers, inner) = super::samples::numbers(s);
         for (cell, x) in self.cells.iter_mut().zip(numbers) {
             self.line.push(',');
             self.line.push_str(cell.set(x));
+        }
+        if self.columns.inner {
+            for (i, cell) in self.inner.iter_mut().enumerate() {
+                self.line.push(',');
+                self.line.push_str(inner.map_or("", |both| cell.set(both[i])));
+            }
         }
         // Writing to a string does not fail.
         let _ = writeln!(self.line, ",{},{}", s.mode.name(), s.status.bits());
@@ -100,6 +105,7 @@ fn field(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulate::InnerSample;
     use controller_core::{Mode, Status};
 
     #[test]
@@ -124,7 +130,7 @@ mod tests {
             status,
             inner: None,
         };
-        let mut csv = CsvWriter::new(Vec::new(), true).expect("memory");
+        let mut csv = CsvWriter::new(Vec::new(), Columns { chapters: true, inner: false }).expect("memory");
         csv.chapter("a,b.toml", Some("latency = 0.1"));
         csv.controller("PI");
         for s in [sample(0.0, 1.0), sample(0.5, f64::NAN), sample(1.0, 0.0)] {
@@ -139,6 +145,35 @@ scenario,case,controller,t,r,y,u,applied,u_f,d_hat,d,mode,status
 \"a,b.toml\",latency = 0.1,PI,0.5,0.1,NaN,-0,0.0000001,0,2,0,auto,32
 \"a,b.toml\",latency = 0.1,PI,1,0.1,0,-0,0.0000001,0,2,0,auto,32
 c.toml,,PI,0,0.1,-0,-0,0.0000001,0,2,0,auto,32
+";
+        assert_eq!(String::from_utf8(csv.into_inner()).expect("text"), expected);
+    }
+
+    #[test]
+    fn a_loop_inside_has_two_columns() {
+        let mut csv = CsvWriter::new(Vec::new(), Columns { chapters: false, inner: true }).expect("memory");
+        let (mode, status, inner) = (Mode::Auto, Status::default(), None);
+        let one = Sample {
+            t: 0.0,
+            r: 1.0,
+            y: 2.0,
+            u: 3.0,
+            applied: 4.0,
+            u_f: 5.0,
+            d_hat: 6.0,
+            d: 7.0,
+            mode,
+            status,
+            inner,
+        };
+        csv.controller("single");
+        csv.sample(&one).expect("memory");
+        csv.controller("cascade");
+        csv.sample(&Sample { inner: Some(InnerSample { r: 8.0, y: 9.5 }), ..one }).expect("memory");
+        let expected = "\
+controller,t,r,y,u,applied,u_f,d_hat,d,inner_r,inner_y,mode,status
+single,0,1,2,3,4,5,6,7,,,auto,0
+cascade,0,1,2,3,4,5,6,7,8,9.5,auto,0
 ";
         assert_eq!(String::from_utf8(csv.into_inner()).expect("text"), expected);
     }

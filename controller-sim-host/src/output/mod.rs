@@ -18,7 +18,7 @@ pub use draft::{Complete, Draft, publish, remove_drafts};
 pub use faults::{Problem, Severity, Trouble, render, render_all};
 pub use file::{FileError, FileTarget, is_same_file};
 pub use json::{SCHEMA, Written, error_json, list_json, run_json, saved_json, text_json, written_json};
-pub use samples::SampleFiles;
+pub use samples::{Columns, SampleFiles};
 pub use table::run_table;
 
 use crate::report::Chapter;

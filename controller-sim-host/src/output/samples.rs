@@ -7,6 +7,35 @@ use super::parquet::ParquetWriter;
 use crate::simulate::{Sample, Sink};
 use std::ops::ControlFlow;
 
+/// Signals of a sample, in the order of the columns.
+pub(super) const NUMBERS: [&str; 8] = ["t", "r", "y", "u", "applied", "u_f", "d_hat", "d"];
+/// Signals of the loop inside of a cascade.
+pub(super) const INNER: [&str; 2] = ["inner_r", "inner_y"];
+
+/// The signals of a sample, and those of the loop inside when it has one.
+pub(super) fn numbers(s: &Sample) -> ([f64; NUMBERS.len()], Option<[f64; INNER.len()]>) {
+    ([s.t, s.r, s.y, s.u, s.applied, s.u_f, s.d_hat, s.d], s.inner.map(|inner| [inner.r, inner.y]))
+}
+
+/// Which columns a file has besides those that every file has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Columns {
+    /// `scenario` and `case`: for several chapters.
+    pub chapters: bool,
+    /// `inner_r` and `inner_y`: for cascades.
+    pub inner: bool,
+}
+
+impl Columns {
+    /// The names of all columns, in order.
+    pub(super) fn names(self) -> impl Iterator<Item = &'static str> {
+        let chapters = if self.chapters { &["scenario", "case"][..] } else { &[] };
+        let inner = if self.inner { &INNER[..] } else { &[] };
+        let list = [chapters, &["controller"], &NUMBERS, inner, &["mode", "status"]];
+        list.into_iter().flatten().copied()
+    }
+}
+
 /// A CSV file, a Parquet file, or both: every sample goes into each. Needs no memory that grows with the run.
 #[derive(Debug)]
 pub struct SampleFiles<'a> {
@@ -17,25 +46,25 @@ pub struct SampleFiles<'a> {
 }
 
 impl<'a> SampleFiles<'a> {
-    /// Begins the files that are given; `several`: for more than one chapter.
+    /// Begins the files that are given.
     ///
     /// # Errors
     /// A file that cannot be begun.
     pub fn create(
         csv: Option<&'a FileTarget>,
         parquet: Option<&'a FileTarget>,
-        several: bool,
+        columns: Columns,
     ) -> Result<Self, FileError> {
         let csv = match csv {
             Some(target) => {
-                let writer = CsvWriter::new(target.create()?, several).map_err(|e| target.failed(&e))?;
+                let writer = CsvWriter::new(target.create()?, columns).map_err(|e| target.failed(&e))?;
                 Some((writer, target))
             }
             None => None,
         };
         let parquet = match parquet {
             Some(target) => {
-                let writer = ParquetWriter::new(target.create()?, several).map_err(|e| target.failed(&e))?;
+                let writer = ParquetWriter::new(target.create()?, columns).map_err(|e| target.failed(&e))?;
                 Some((writer, target))
             }
             None => None,

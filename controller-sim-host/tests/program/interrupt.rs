@@ -14,8 +14,14 @@ fn endless() -> String {
     BASE.replacen("duration = 20.0", "duration = 9e6", 1)
 }
 
+/// The program with the signals of a terminal: whoever runs the tests may have had them ignored (`nohup`).
 fn start(folder: &Folder, arguments: &[&str]) -> Child {
     let mut command = folder.command(arguments);
+    if cfg!(target_os = "linux") {
+        command = Command::new("env");
+        command.args(["--default-signal", env!("CARGO_BIN_EXE_controller-sim")]).args(arguments);
+        command.current_dir(&folder.0).stdin(Stdio::null());
+    }
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
 }
 
@@ -76,4 +82,28 @@ fn runs_side_by_side_are_stopped() {
     let output = end(child);
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(130), ""));
     assert_eq!(json(&output)["error"]["code"], "stopped");
+}
+
+/// Started to outlive its terminal, the program does: a hangup does nothing to it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_hangup_that_is_ignored_stays_so() {
+    let folder = Folder::new("hangup");
+    folder.write("s.toml", &BASE.replacen("duration = 20.0", "duration = 2e4", 1));
+    let mut command = Command::new("env");
+    command.args([
+        "--ignore-signal=HUP",
+        env!("CARGO_BIN_EXE_controller-sim"),
+        "run",
+        "s.toml",
+        "--csv",
+        "s.csv",
+    ]);
+    command.current_dir(&folder.0).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().expect("the program starts");
+    wait_until("a temporary file", || temporary(&folder, "s.csv").is_some());
+    signal(&child, "-HUP");
+    let output = end(child);
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+    assert_eq!(folder.names(), ["s.csv", "s.toml"]);
 }
