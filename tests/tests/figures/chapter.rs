@@ -182,15 +182,15 @@ fn the_descriptions_of_the_figures_say_what_the_runs_give() {
     ]);
     let page = Page::new("figures/de-fig-11");
     page.says(&[
-        ("0.182", iae(&page, "DE-MOMI").1),
+        ("0.191", iae(&page, "DE-MOMI").1),
         ("0.338", iae(&page, "DRMO").1),
         ("0.531", iae(&page, "MOMI").1),
     ]);
     let page = Page::new("figures/de-fig-12");
     page.says(&[
-        ("2.87", iae(&page, "DE-MOMI").1),
-        ("4.03", iae(&page, "DRMO").1),
-        ("3.96", iae(&page, "MOMI").1),
+        ("2.88", iae(&page, "DE-MOMI").1),
+        ("4.04", iae(&page, "DRMO").1),
+        ("3.97", iae(&page, "MOMI").1),
     ]);
     let ie = |who: &str| page.after(REJECTION, who).ie.abs();
     assert!(ie("DRMO") < ie("MOMI"));
