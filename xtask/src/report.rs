@@ -10,7 +10,9 @@ use crate::rungs;
 use crate::shell::{Cmd, Outcome, target_dir};
 
 /// Where the scenarios are that come with the program, below the workspace root.
-const SCENARIOS: [&str; 2] = ["controller-sim-host/scenarios", "controller-sim-host/scenarios/figures"];
+const SCENARIOS: &str = "controller-sim-host/scenarios";
+/// Folders of it whose scenarios run; others may hold parts that scenarios include.
+const FOLDERS: [&str; 2] = ["", "figures"];
 
 /// Samples of the long page.
 const LONG: u64 = 1_000_000;
@@ -30,60 +32,88 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
     // First: checks that cannot fail would say nothing about the pages.
     node(root, "self_test.mjs", &tools).arg("--scratch").arg(&scratch).run()?;
     let mut built = short_pages(root, &program, &pages)?;
-    built.push(long_page(&program, &scratch, &pages)?);
-    node(root, "check.mjs", &tools).arg("--shots").arg(&shots).args(&built).run()?;
-    println!("  to look at: {}", shots.display());
+    built.push(long_page(&program, &pages)?);
     let memory = memory::ladder(&program, &scratch)?.map_or_else(String::new, |remark| format!("; {remark}"));
+    let list = built.iter().map(|name| pages.join(name));
+    let checked = node(root, "check.mjs", &tools).arg("--shots").arg(&shots).args(list).run();
+    println!("  to look at: {}", shots.display());
+    checked.map_err(|message| format!("pages have faults, listed above\n{message}"))?;
     Ok(Done::Passed(format!("{} pages without a fault{memory}", built.len())))
 }
 
-/// A page of every scenario, one of the demo and one of several scenarios.
-fn short_pages(root: &Path, program: &Path, pages: &Path) -> Outcome<Vec<PathBuf>> {
-    let scenarios = scenarios(root)?;
+/// A page of every scenario, one of the demo and one of several scenarios; gives their names.
+///
+/// The scenarios are copied beside the pages, so that the commands on the pages are as short as a person's.
+fn short_pages(root: &Path, program: &Path, pages: &Path) -> Outcome<Vec<String>> {
+    copy_folder(&root.join(SCENARIOS), pages)?;
+    let scenarios = scenarios(pages)?;
     let mut built = Vec::new();
-    let mut build = |name: &str, words: &[PathBuf]| -> Outcome {
-        let page = pages.join(format!("{name}.html"));
-        Cmd::new(program, pages).args(words).arg("--report").arg(&page).capture()?;
+    let mut build = |name: &str, words: &[&str]| -> Outcome {
+        let page = format!("{name}.html");
+        Cmd::new(program, pages).args(words).args(["--report", &page]).capture()?;
         built.push(page);
         Ok(())
     };
-    build("built-in", &["demo".into()])?;
+    build("built-in", &["demo"])?;
     for path in &scenarios {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        build(&name, &["run".into(), path.clone()])?;
+        let stem = Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
+        build(&stem, &["run", path])?;
     }
-    let several: Vec<PathBuf> =
-        std::iter::once("run".into()).chain(scenarios.iter().take(2).cloned()).collect();
+    let several: Vec<&str> =
+        std::iter::once("run").chain(scenarios.iter().take(2).map(String::as_str)).collect();
     build("several-at-once", &several)?;
     Ok(built)
 }
 
-/// The page of a long noisy run, which must stay small.
-fn long_page(program: &Path, scratch: &Path, pages: &Path) -> Outcome<PathBuf> {
-    let scenario = scratch.join("long.toml");
+/// The page of a long noisy run, which must stay small; gives its name.
+fn long_page(program: &Path, pages: &Path) -> Outcome<String> {
+    let (scenario, page) = ("long-run.toml", "long-run.html");
     let text = LongRun { samples: LONG, every: LONG / 20, noise: true }.text();
-    std::fs::write(&scenario, text).map_err(|e| format!("cannot write {}: {e}", scenario.display()))?;
-    let page = pages.join("long-run.html");
-    Cmd::new(program, pages).arg("run").arg(&scenario).arg("--report").arg(&page).capture()?;
-    let bytes = std::fs::metadata(&page).map_err(|e| format!("no page {}: {e}", page.display()))?.len();
+    std::fs::write(pages.join(scenario), text).map_err(|e| format!("cannot write {scenario}: {e}"))?;
+    Cmd::new(program, pages).args(["run", scenario, "--report", page]).capture()?;
+    let bytes = std::fs::metadata(pages.join(page)).map_err(|e| format!("no page {page}: {e}"))?.len();
     if bytes >= MOST_BYTES {
         return Err(format!("the page of {LONG} samples has {bytes} bytes; allowed: below {MOST_BYTES}"));
     }
-    Ok(page)
+    Ok(page.to_string())
 }
 
-/// The scenarios that come with the program, in order.
-fn scenarios(root: &Path) -> Outcome<Vec<PathBuf>> {
+/// The scenarios below a folder, by their paths from there, in order.
+fn scenarios(base: &Path) -> Outcome<Vec<String>> {
     let mut found = Vec::new();
-    for folder in SCENARIOS.iter().map(|name| root.join(name)).filter(|folder| folder.is_dir()) {
-        let list =
-            std::fs::read_dir(&folder).map_err(|e| format!("cannot read {}: {e}", folder.display()))?;
-        let mut files: Vec<PathBuf> = list.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
-        files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-        files.sort();
-        found.extend(files);
+    for folder in FOLDERS.iter().map(Path::new).filter(|folder| base.join(folder).is_dir()) {
+        for name in names(&base.join(folder))? {
+            if name.ends_with(".toml") {
+                found.push(folder.join(name).to_string_lossy().into_owned());
+            }
+        }
     }
-    if found.is_empty() { Err(format!("no scenario in {}", SCENARIOS[0])) } else { Ok(found) }
+    if found.is_empty() { Err(format!("no scenario in {}", base.display())) } else { Ok(found) }
+}
+
+/// Copies all files of a folder and of those in it.
+fn copy_folder(from: &Path, to: &Path) -> Outcome {
+    std::fs::create_dir_all(to).map_err(|e| format!("cannot create {}: {e}", to.display()))?;
+    for name in names(from)? {
+        let (source, copy) = (from.join(&name), to.join(&name));
+        if source.is_dir() {
+            copy_folder(&source, &copy)?;
+        } else {
+            std::fs::copy(&source, &copy).map_err(|e| format!("cannot copy {}: {e}", source.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// What is in a folder, in order.
+fn names(folder: &Path) -> Outcome<Vec<String>> {
+    let unreadable = |e: std::io::Error| format!("cannot read {}: {e}", folder.display());
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        names.push(entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(names)
 }
 
 /// One of the scripts of the checks.
@@ -112,9 +142,9 @@ mod tests {
     #[test]
     fn the_scenarios_of_the_program_are_found() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-        let found = scenarios(root).unwrap();
-        assert!(found.iter().any(|path| path.ends_with("demo.toml")), "{found:?}");
-        assert!(scenarios(Path::new("no-such-folder")).unwrap_err().contains(SCENARIOS[0]));
+        let found = scenarios(&root.join(SCENARIOS)).unwrap();
+        assert!(found.contains(&"demo.toml".to_string()), "{found:?}");
+        assert!(scenarios(Path::new("no-such-folder")).unwrap_err().contains("no-such-folder"));
     }
 
     #[test]
