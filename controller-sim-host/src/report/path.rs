@@ -313,10 +313,10 @@ mod tests {
         let view = View { from: 0.0, to: samples.len() as f64, columns };
         let record = Record::new(view, 1.0, samples.len() as u64);
         let bands = samples.chunks(record.samples as usize).map(|chunk| {
-            let values = chunk.iter().copied().filter(|x| x.is_finite());
+            let mut values = chunk.iter().copied().filter(|x| x.is_finite());
             let (min, max) = (values.clone().reduce(f64::min)?, values.clone().reduce(f64::max)?);
-            let (first, last) = (values.clone().next()?, values.last()?);
-            Some(Band { first, min, max, last })
+            let last = values.clone().next_back()?;
+            Some(Band { first: values.next()?, min, max, last })
         });
         let envelope = Envelope { bands: bands.collect() };
         let size = (columns as f64, 100.0);
