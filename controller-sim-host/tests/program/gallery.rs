@@ -16,7 +16,7 @@ fn the_demo_is_saved_under_the_next_free_name() {
         let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
         assert!(text(&output.stdout).starts_with(&format!("wrote {wrote};")), "{}", text(&output.stdout));
-        assert!(folder.read(wrote).starts_with("# Three controllers"));
+        assert_eq!(folder.read(wrote), include_str!("../../scenarios/demo.toml"));
     }
     let output = folder.run(&["demo", "--save", "a.toml", "--json"]);
     assert_eq!(json(&output)["saved"], "a.toml");
