@@ -1,7 +1,7 @@
 //! The simulator's plant against an independent state space and closed forms: dead time, latency, disturbances off the
 //! sampling grid, all exact.
 
-use controller_core::{LimitConfig, PidConfig};
+use controller_core::{LimitConfig, Mode, PidConfig};
 use controller_sim_host::scenario::{Change, ControllerSpec, Event, Initial, Noise, Signal};
 use controller_sim_host::simulate::{ClosedLoop, EventKind, Metrics, Precision, RunOptions, run};
 use controller_tests::cases::{SETPOINT_STEP, from_rest, transfer_function};
@@ -152,4 +152,25 @@ fn runs_repeat() {
     assert_eq!(first, bits(&scenario));
     scenario.noise = Some(Noise { std: 0.01, seed: 4 });
     assert_ne!(first, bits(&scenario));
+}
+
+/// The mode that a controller starts in holds in the first sample: in Cascade a remote set-point that steps at `t = 0` acts
+/// at once, as the local one does in Auto; in Hold nothing acts.
+#[test]
+fn the_first_sample_runs_in_the_mode_of_the_start() {
+    let first = |mode, change| {
+        let spec = ControllerSpec { mode, ..pi("a") };
+        let mut scenario = from_rest(&PLANTS[0], 0.05, 1.0, change, vec![spec]);
+        scenario.initial = Initial { setpoint: 2.0, disturbance: 0.3 };
+        let options = RunOptions { trace: true, ..RunOptions::default() };
+        run(&scenario, options).expect("valid").controllers[0].trace[0]
+    };
+    let step = || Signal::Step(3.0);
+    let auto = first(Mode::Auto, Change::Setpoint(step()));
+    // From 2 - 0.3 by kp*1 + ki*ts*1.
+    assert!((auto.u - (1.7 + 0.8 + 0.6 * 0.05)).abs() < 1e-12, "{}", auto.u);
+    let cascade = first(Mode::Cascade, Change::RemoteSetpoint(step()));
+    assert_eq!((cascade.u, cascade.mode), (auto.u, Mode::Cascade));
+    let hold = first(Mode::Hold, Change::Setpoint(step()));
+    assert!((hold.u - 1.7).abs() < 1e-12 && hold.mode == Mode::Hold, "{}", hold.u);
 }

@@ -3,7 +3,7 @@
 use crate::scenario::{CompensatorSpec, ControllerSpec};
 use controller_core::{
     AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigError, ConfigErrors, Controller,
-    ControllerInput, ControllerOutput, ControllerState, NoCompensator, Param, Real, Reason,
+    ControllerInput, ControllerOutput, ControllerState, Mode, NoCompensator, Param, Real, Reason,
 };
 
 type Compensated<T> = AnyCompensator<T, Vec<T>>;
@@ -82,12 +82,24 @@ impl<T: Real> AnyLaw<T> {
         Ok(Self { block, ts, latency, capacity })
     }
 
-    /// At rest at the set-point and measurement `y0` and the output `u0`.
-    pub fn settle(&mut self, r0: f64, y0: f64, u0: f64) {
+    /// At rest at the set-point `r0`, the measurement `y0` and the output `u0`, and in `mode` before the first sample, as
+    /// far as it is one that starts from the output that is there.
+    pub fn settle(&mut self, mode: Mode, r0: f64, y0: f64, u0: f64) {
         let [r0, y0, u0] = [r0, y0, u0].map(T::from_f64);
         match &mut self.block {
             Block::Plain { law, state } => law.settle(state, r0, y0, u0),
             Block::Compensated { law, state } => law.settle(state, r0, y0, u0),
+        }
+        // A settled state is in Auto. To change to these modes takes a sample of its own, which would swallow a set-point
+        // that steps with the first one, or follow it once more; at rest it moves nothing.
+        if matches!(mode, Mode::Cascade | Mode::Hold) {
+            let _ = self.step(&ControllerInput {
+                r: r0,
+                r_remote: r0,
+                y: y0,
+                mode,
+                ..ControllerInput::default()
+            });
         }
     }
 

@@ -41,7 +41,7 @@ impl<T: Real> Secondary<T> {
             return Ok(None);
         };
         let mut law = AnyLaw::<T>::new(spec, ts, latency, spec.needed_capacity(ts, latency))?;
-        law.settle(y0, y0, u0);
+        law.settle(Mode::Cascade, y0, y0, u0);
         let r = T::from_f64(y0);
         let input = ControllerInput { r, r_remote: r, mode: Mode::Cascade, ..ControllerInput::default() };
         let output =

@@ -72,7 +72,7 @@ impl<T: Real> Loop<T> {
         };
         let mut law = AnyLaw::<T>::new(spec, ts, latency, capacity(scenario, index)).map_err(refused)?;
         let own_u0 = secondary.as_ref().map_or(u0, |inner| inner.y0);
-        law.settle(initial.setpoint, initial.setpoint, own_u0);
+        law.settle(spec.mode, initial.setpoint, initial.setpoint, own_u0);
 
         let r0 = T::from_f64(initial.setpoint);
         let local = signals(scenario, index, |change| match change {
