@@ -107,4 +107,60 @@ PLAIN = [
          anti_windup="conditional"),
 ]
 
-CASES = PLAIN
+SIGNALS = [
+    case("sines that begin and end between samples", "0.1", dict(gain="1", lags=["1", "0.5", "0.2"], dead_time="0.237"),
+         pi("0.8", "0.5"),
+         [SETPOINT, event("1.234", disturbance={"sine": "0.8", "period": "1.7", "phase": "0.7", "duration": "9.1"}),
+          event("4.056", disturbance={"sine": "-0.5", "period": "0.23"}), load("13.3")], latency="0.04"),
+    case("sine into an integrating loop with a zero", "0.05",
+         dict(gain="0.5", integrators=1, pairs=[("0.5", "0.3")], zeros=[("-0.2", "0")], dead_time="0.0185"),
+         pi("0.5", "0.03"), [event("0.777", disturbance={"sine": "0.6", "period": "3.1", "phase": "-1"})],
+         latency="0.05", initial={"setpoint": "2", "disturbance": "0.1"}),
+    case("sine through feedthrough", "0.1", dict(gain="0.8", lags=["2"], zeros=[("0.5", "0")], dead_time="0.033"),
+         pi("0.7", "0.9"), [event("0.05", disturbance={"sine": "1", "period": "0.9", "phase": "1.5"})]),
+    case("recorded lines, then a step", "0.1", dict(gain="1", lags=["1", "1"], dead_time="0.137"), pi("0.6", "0.4"),
+         [SETPOINT, event("3.21", disturbance={"times": ["0", "0.513", "1.9", "2.004", "9.9", "12"],
+                                               "values": ["0.3", "-0.2", "0.5", "1.5", "-1", "0"], "between": "line"}),
+          event("5.5", disturbance={"pulse": "0.7", "duration": "1.234"}),
+          event("14.04", disturbance={"step": "0.4"})], latency="0.04", initial={"disturbance": "0.2"}),
+    case("recorded values that are held", "0.1", dict(gain="0.6", integrators=1, lags=["0.5"], dead_time="0.1"),
+         pi("0.6", "0.05"),
+         [event("0.123", disturbance={"times": ["0", "0.513", "1.9", "2.004", "4.444", "9.1"],
+                                      "values": ["0.3", "-0.2", "0.5", "1.5", "-0.3", "0.1"], "between": "hold"}),
+          event("12.5", disturbance={"ramp": "0.1", "duration": "2.02"})], latency="0.1"),
+    case("set-point ramp, pulse and sine", "0.1", dict(gain="1", lags=["1", "0.3"], dead_time="0.05"),
+         pi("1.2", "0.8", b="0.7"),
+         [event("0.25", setpoint={"ramp": "0.4", "duration": "3.33"}),
+          event("6.07", setpoint={"pulse": "-0.8", "duration": "2.5"}),
+          event("7", setpoint={"sine": "0.3", "period": "2.9", "phase": "0.4", "duration": "10.05"}),
+          event("12.1", setpoint={"step": "0.5"}), load("15.5")], latency="0.04"),
+]
+
+DEVICES = [
+    case("sensor with range and resolution", "0.1", dict(gain="1", lags=["2", "0.5"], dead_time="0.137"),
+         pi("1.5", "0.6"), [SETPOINT, load("9.99", "-0.7")],
+         sensor=dict(lo="-0.1", hi="1.07", resolution="0.03")),
+    case("actuator with range, rate and read-back", "0.1", dict(gain="1", lags=["2", "0.5"], dead_time="0.137"),
+         pi("2", "1"), [SETPOINT, load("9.99", "-0.7")],
+         actuator=dict(lo="-0.5", hi="1.5", rate="1.3", read_back=True)),
+    case("actuator with resolution and dead band", "0.1", dict(gain="1", lags=["2", "0.5"], dead_time="0.137"),
+         pi("1.2", "0.5"), [SETPOINT, load("9.99", "-0.7")], latency="0.04",
+         actuator=dict(lo="-1", hi="1.4", rate="3", resolution="0.05", deadband="0.021")),
+    case("sensor and actuator together, read-back", "0.05", dict(gain="0.6", integrators=1, lags=["0.3"]),
+         pi("0.9", "0.1"), [SETPOINT, load("5.02", "0.3")], latency="0.02",
+         sensor=dict(resolution="0.01"),
+         actuator=dict(lo="-0.8", hi="0.8", rate="4", resolution="0.02", deadband="0.03", read_back=True)),
+]
+
+CASCADES = [
+    case("cascade", "0.1", dict(gain="1.2", lags=["0.4", "2", "1"], dead_time="0.137"), pi("1.5", "0.5"),
+         [event("0.2", setpoint={"step": "3"}), load("10.77", "1.5")], latency="0.04",
+         inner_plant=dict(gain="1.5", lags=["0.4"], dead_time="0.037"), secondary=dict(pid=pi("0.8", "1.6")),
+         initial={"setpoint": "2", "disturbance": "0.3"}),
+    case("cascade whose inner loop meets its limit", "0.1",
+         dict(gain="1", integrators=1, lags=["0.3", "0.8"], dead_time="0.1"), pi("0.5", "0.04"),
+         [event("0", setpoint={"step": "4"}), load("14.05", "-0.2")], samples=300,
+         inner_plant=dict(gain="1", lags=["0.3"]), secondary=dict(pid=pi("0.9", "3"), limits=dict(lo="-0.3", hi="0.6"))),
+]
+
+CASES = PLAIN + SIGNALS + DEVICES + CASCADES

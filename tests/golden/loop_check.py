@@ -11,7 +11,7 @@ TOLERANCE = 1e-9
 
 def check_settling(loop):
     """The last tenth stays within three times what the middle did: no loop that amplifies rounding."""
-    y = np.array([float(x - loop.y0) for x in loop.y])
+    y = np.array([float(x - loop.path.y0) for x in loop.y])
     tenth = len(y) // 10
     assert np.abs(y[-tenth:]).max() <= 3 * np.abs(y[tenth:-tenth]).max(), loop.case["name"]
 
@@ -41,19 +41,19 @@ def check_by_solver(loop):
     # Changes of level and slope at the plant's input, in deviations.
     changes = {}
     for k, rise in loop.steps:
-        at = k * loop.ts + loop.latency + loop.dead
+        at = k * loop.ts + loop.latency + loop.path.dead
         changes.setdefault(at, [0.0, 0.0])[0] += float(rise)
     for at, kind, coefficient in loop.disturbances:
         if isinstance(kind, tuple):
-            changes.setdefault(at + loop.dead, [0.0, 0.0])
+            changes.setdefault(at + loop.path.dead, [0.0, 0.0])
         else:
-            changes.setdefault(at + loop.dead, [0.0, 0.0])[kind == "ramp"] += float(coefficient)
+            changes.setdefault(at + loop.path.dead, [0.0, 0.0])[kind == "ramp"] += float(coefficient)
     samples = {k * loop.ts: k for k in range(len(loop.y))}
     instants = sorted({*samples, *changes, Fraction(0)})
 
     x, level, slope, begun = np.zeros(len(b)), 0.0, 0.0, 0.0
-    worst, scale = 0.0, max(abs(float(y - loop.y0)) for y in loop.y)
-    dead = float(loop.dead)
+    worst, scale = 0.0, max(abs(float(y - loop.path.y0)) for y in loop.y)
+    dead = float(loop.path.dead)
 
     def sines(t):
         return sum(
@@ -65,7 +65,7 @@ def check_by_solver(loop):
         if now in samples:
             # What arrives now is not seen yet.
             y = c @ x + d * (level + slope * (t - begun) + sines(np.nextafter(t, -1.0)))
-            worst = max(worst, abs(y - float(loop.y[samples[now]] - loop.y0)))
+            worst = max(worst, abs(y - float(loop.y[samples[now]] - loop.path.y0)))
         if now in changes:
             level, begun = level + slope * (t - begun) + changes[now][0], t
             slope += changes[now][1]

@@ -50,8 +50,9 @@ class Pid:
         self.back = min(mp.mpf(1), ts / tt) if ki != 0 and not self.conditional else mp.mpf(0)
         self.u, self.v, self.increment = u0, u0, mp.mpf(0)
 
-    def step(self, r, y, applied=None, u_f=0):
-        """The output of one sample; `applied`: what came of the last one, if it is known."""
+    def step(self, r, y, applied=None, u_f=0, blocked=(False, False)):
+        """The output of one sample. `applied`: what came of the last one, if it is known; `blocked`: whether the integral
+        term must not rise, not fall."""
         a = self.u if applied is None else min(max(applied, self.lo), self.hi)
         if self.conditional:
             if (self.v - a) * self.increment > 0:
@@ -61,6 +62,8 @@ class Pid:
         e = r - y
         mean = e if self.rule == "backward" else (e + self.e) / 2
         self.increment, self.e = self.ki * self.ts * mean, e
+        if (blocked[0] and self.increment > 0) or (blocked[1] and self.increment < 0):
+            self.increment = mp.mpf(0)
         self.i += self.increment
         self.v = self.i + self.from_r.next(r) - self.from_y.next(y) + u_f
         u = self.v

@@ -14,11 +14,9 @@ from exact_response import exact
 def disturbance_primitives(events, level):
     """Steps, ramps and sines that add up to the disturbance minus its level before `t = 0`."""
     level = exact(level)
-    # What a recorded signal will still have done when a later step replaces it is not treated.
     list_ = []
-    for event in events:
-        if "disturbance" not in event:
-            continue
+    changes = [e for e in events if "disturbance" in e]
+    for index, event in enumerate(changes):
         at, d = Fraction(event["at"]), event["disturbance"]
         if "step" in d:
             list_.append((at, "step", exact(d["step"]) - level))
@@ -37,22 +35,32 @@ def disturbance_primitives(events, level):
                 later = phase + omega * exact(d["duration"])
                 list_.append((at + Fraction(d["duration"]), ("sine", omega, later), -exact(d["sine"])))
         else:
-            times = [at + Fraction(t) for t in d["times"]]
-            values = [exact(v) for v in d["values"]]
-            if d["between"] == "hold":
-                for t, v in zip(times, values):
-                    list_.append((t, "step", v - level))
-                    level = v
-            else:
-                list_.append((at, "step", values[0] - level))
-                slope = mp.mpf(0)
-                for i in range(len(times) - 1):
-                    new = (values[i + 1] - values[i]) / exact(times[i + 1] - times[i])
-                    list_.append((times[i], "ramp", new - slope))
-                    slope = new
-                list_.append((times[-1], "ramp", -slope))
-                level = values[-1]
+            # Until the next signal that sets the level.
+            ends = (Fraction(e["at"]) for e in changes[index + 1 :] if {"step", "times"} & set(e["disturbance"]))
+            level = recorded(list_, at, d, level, next(ends, None))
     return sorted(list_, key=lambda item: item[0])
+
+
+def recorded(list_, at, d, level, end):
+    """Adds a table that begins at `at`; gives the level at its end."""
+    times = [at + Fraction(t) for t in d["times"]]
+    values = [exact(v) for v in d["values"]]
+    slope = mp.mpf(0)
+    for i, (t, v) in enumerate(zip(times, values)):
+        if end is not None and t >= end:
+            list_.append((end, "ramp", -slope))
+            return level
+        if d["between"] == "hold" or i == 0:
+            list_.append((t, "step", v - level))
+            level = v
+        if d["between"] == "line":
+            last = i + 1 == len(times)
+            new = mp.mpf(0) if last else (values[i + 1] - v) / exact(times[i + 1] - t)
+            list_.append((t, "ramp", new - slope))
+            slope, until = new, t if last else times[i + 1]
+            until = until if end is None else min(until, end)
+            level = v + slope * exact(until - t)
+    return level
 
 
 def setpoint_at(events, initial, t):

@@ -41,12 +41,14 @@ def short(x):
 
 
 def rows(loop, count):
-    """Sample, output, controller output, output in between: the first few, then every eleventh, then the last."""
+    """Sample, measurement, controller output, output in between, in a cascade the set-point and the measurement of the
+    inner loop: the first few, then every eleventh, then the last."""
     chosen = sorted({*range(6), *range(6, count, EVERY), count - 1})
     table = []
     for k in chosen:
         between = [loop.output((k + f) * loop.ts) for f in BETWEEN]
-        table.append([k, *(float(short(x)) for x in (loop.y[k], loop.u[k], *between))])
+        signals = (loop.seen[k], loop.u[k], *between, *loop.extra[k])
+        table.append([k, *(float(short(x)) for x in signals)])
     return table
 
 
@@ -57,8 +59,7 @@ def main():
         check_settling(loop)
         solved = check_by_solver(loop)
         print("%-62s solver %.1e" % (case["name"], solved), file=sys.stderr)
-        stored = {key: value for key, value in case.items() if key != "chain"}
-        results.append({**stored, "rows": rows(loop, case["samples"])})
+        results.append({**case, "rows": rows(loop, case["samples"])})
     text = "[\n" + ",\n".join(json.dumps(r, separators=(",", ":")) for r in results) + "\n]\n"
     if "--check" in sys.argv:
         assert OUTPUT.read_text() == text, "loops.json differs"

@@ -6,11 +6,14 @@
 use crate::cases::{from_rest, model, transfer_function};
 use crate::oracle::state_space::PlantFactors;
 use controller_core::{
-    AntiWindupConfig, EstimatorConfig, IntegralRule, LimitConfig, ObserverConfig, PidConfig,
+    AntiWindupConfig, EstimatorConfig, IntegralRule, LimitConfig, Mode, ObserverConfig, PidConfig,
 };
 use controller_design::model::TransferFunction;
-use controller_sim_host::scenario::{Change, ControllerSpec, Event, Initial, Scenario, Signal};
+use controller_sim_host::scenario::{
+    Actuator, Between, Change, ControllerSpec, Event, Initial, Recording, Scenario, Sensor, Signal,
+};
 use serde_json::Value;
+use std::sync::Arc;
 
 /// Instants between two samples at which the outputs are tabulated, as tenths of a sample.
 pub const BETWEEN: [usize; 2] = [3, 7];
@@ -35,12 +38,14 @@ pub struct GoldenLoop {
 pub struct Row {
     /// Number of the sample.
     pub k: usize,
-    /// Output of the plant at the sample \[y\].
+    /// Measurement \[y\].
     pub y: f64,
     /// Output of the controller \[u\].
     pub u: f64,
     /// Output of the plant at [`BETWEEN`] \[y\].
     pub between: [f64; 2],
+    /// Set-point and measurement of the inner loop of a cascade.
+    pub inner: Option<(f64, f64)>,
 }
 
 impl GoldenLoop {
@@ -138,12 +143,16 @@ fn read(case: &Value) -> GoldenLoop {
         disturbance: number(initial, "disturbance", 0.0),
     };
     scenario.events = events;
+    scenario.inner_plant = case.get("inner_plant").map(|part| Owned::read(part).transfer_function());
+    scenario.sensor = sensor(case.get("sensor").unwrap_or(&Value::Null));
+    scenario.actuator = actuator(case.get("actuator").unwrap_or(&Value::Null));
     let number_at = |row: &Value, index: usize| row[index].as_f64().expect("a number");
     let rows = list(case, "rows", |row| Row {
         k: row[0].as_u64().expect("a sample") as usize,
         y: number_at(row, 1),
         u: number_at(row, 2),
         between: [number_at(row, 3), number_at(row, 4)],
+        inner: row.get(5).map(|_| (number_at(row, 5), number_at(row, 6))),
     });
     let name = case["name"].as_str().expect("a name").to_owned();
     GoldenLoop { name, order: plant.factors().order(), scenario, rows }
@@ -161,6 +170,9 @@ fn controller(case: &Value) -> ControllerSpec {
         Some(other) => panic!("{other}: unknown"),
         None => AntiWindupConfig::BackCalculation { tt: case.get("tt").map(decimal) },
     };
+    if let Some(inner) = case.get("secondary") {
+        spec.secondary = Some(Box::new(ControllerSpec { mode: Mode::Cascade, ..controller(inner) }));
+    }
     if let Some(e) = case.get("estimator") {
         let of = |key| number(e, key, f64::NAN);
         let (gain, dead_time) = (of("gain"), of("dead_time"));
@@ -172,6 +184,25 @@ fn controller(case: &Value) -> ControllerSpec {
         spec = spec.with_observer(ObserverConfig { model, alpha: number(o, "alpha", f64::NAN), order: None });
     }
     spec
+}
+
+fn sensor(from: &Value) -> Sensor {
+    Sensor {
+        lo: number(from, "lo", f64::NEG_INFINITY),
+        hi: number(from, "hi", f64::INFINITY),
+        resolution: number(from, "resolution", 0.0),
+    }
+}
+
+fn actuator(from: &Value) -> Actuator {
+    Actuator {
+        lo: number(from, "lo", f64::NEG_INFINITY),
+        hi: number(from, "hi", f64::INFINITY),
+        rate: number(from, "rate", f64::INFINITY),
+        resolution: number(from, "resolution", 0.0),
+        deadband: number(from, "deadband", 0.0),
+        read_back: from.get("read_back").and_then(Value::as_bool).unwrap_or(false),
+    }
 }
 
 fn pid(from: &Value) -> PidConfig {
@@ -201,7 +232,16 @@ fn read_signal(from: &Value) -> Signal {
         Signal::Ramp { slope: decimal(slope), duration }
     } else if let Some(height) = from.get("pulse") {
         Signal::Pulse { height: decimal(height), duration }
+    } else if let Some(amplitude) = from.get("sine") {
+        let (period, phase) = (number(from, "period", f64::NAN), number(from, "phase", 0.0));
+        Signal::Sine { amplitude: decimal(amplitude), period, phase, duration }
     } else {
-        panic!("{from}: no signal")
+        let between = match from["between"].as_str() {
+            Some("line") => Between::Line,
+            Some("hold") => Between::Hold,
+            _ => panic!("{from}: no signal"),
+        };
+        let (times, values) = (list(from, "times", decimal), list(from, "values", decimal));
+        Signal::Recorded(Arc::new(Recording { name: "golden".to_owned(), times, values, between }))
     }
 }
