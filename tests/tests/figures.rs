@@ -12,3 +12,5 @@ mod observer;
 mod page;
 #[path = "figures/practice.rs"]
 mod practice;
+#[path = "figures/wandering.rs"]
+mod wandering;

@@ -5,19 +5,28 @@ use controller_sim_host::scenario::read;
 use controller_sim_host::simulate::Precision;
 
 /// Runs whose remarks are what the page is about: scenario, controller.
-const INTENDED: [(&str, &str); 12] = [
+const INTENDED: [(&str, &str); 21] = [
     ("sensor", "hold, go on"),
     ("sensor", "safe output, wait"),
     ("latency", "not told, alpha = 0.7"),
+    ("single-precision", "as if it stalled"),
+    ("level", "tight"),
+    ("level", "averaging"),
+    ("actuator", "PI"),
+    ("actuator", "PI, dead band"),
+    ("sine-disturbance", "PI"),
+    ("sine-disturbance", "alpha = 10"),
+    ("sine-disturbance", "alpha = 2"),
+    ("random-walk", "PI"),
+    ("random-walk", "alpha = 100"),
+    ("random-walk", "alpha = 10"),
+    ("random-walk", "alpha = 1"),
     ("figures/dob-fig-04-05-plant-1-ms-1.2", "PI"),
     ("figures/dob-fig-04-05-plant-1-ms-2.0", "PI"),
     ("figures/dob-fig-04-05-plant-2-ms-1.2", "PI"),
     ("figures/dob-fig-04-05-plant-2-ms-2.0", "PI"),
     ("figures/dob-fig-04-05-plant-3-ms-1.2", "PI"),
     ("figures/dob-fig-04-05-plant-3-ms-2.0", "PI"),
-    ("", ""),
-    ("", ""),
-    ("", ""),
 ];
 
 /// The names of all scenarios, in order.

@@ -1,6 +1,6 @@
 //! A built-in scenario with its result.
 
-use controller_sim_host::scenario::{Change, Scenario, Signal, read};
+use controller_sim_host::scenario::{Scenario, read};
 use controller_sim_host::simulate::{Metrics, Precision, RunOptions, RunResult, Sample, run};
 use std::path::PathBuf;
 
@@ -108,12 +108,6 @@ impl Page {
 pub(crate) fn quiet(mut scenario: Scenario) -> Scenario {
     scenario.noise = None;
     scenario
-}
-
-/// The times of the events that change a disturbance to a level.
-pub(crate) fn step_times(scenario: &Scenario) -> Vec<f64> {
-    let steps = |c: &Change| matches!(c, Change::Disturbance(Signal::Step(_)));
-    scenario.events.iter().filter(|e| e.changes.iter().any(steps)).map(|e| e.at).collect()
 }
 
 /// The text is there: a sentence that a test stands for.
