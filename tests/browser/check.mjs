@@ -5,6 +5,9 @@ import { mkdir, stat } from 'node:fs/promises';
 import { start } from './browser.mjs';
 import { checkPage, eachOf, options, within } from './page_check.mjs';
 
+/** Faults that are shown of one page: the first ones say what to repair. */
+const SHOWN = 20;
+
 const { rest: pages, ...named } = options(process.argv.slice(2));
 if (pages.length === 0) {
   throw new Error('no page to check');
@@ -13,12 +16,15 @@ await mkdir(named.shots, { recursive: true });
 const tools = await start(named);
 let count = 0;
 try {
-  const results = await eachOf(pages, 2, (page) => within(180, page, checkPage(tools, page, named)));
+  const results = await eachOf(pages, 2, (page) => within(600, page, checkPage(tools, page, named)));
   for (const [at, { name, faults, sheets, load }] of results.entries()) {
     const { size } = await stat(pages[at]);
     console.log(`${name}: ${(size / 1000).toFixed(0)} kB, loads in ${load.toFixed(0)} ms, ${sheets} sheets of A4`);
-    for (const { kind, text, variants } of faults) {
+    for (const { kind, text, variants } of faults.slice(0, SHOWN)) {
       console.log(`  ${kind} (${variants.join(', ')}): ${text}`);
+    }
+    if (faults.length > SHOWN) {
+      console.log(`  and ${faults.length - SHOWN} more`);
     }
     count += faults.length;
   }

@@ -36,7 +36,7 @@ export async function checkPage({ browser, axe }, file, { shots, only } = {}) {
       for (const { kind, text } of [...seen, ...found]) {
         const key = `${kind}: ${text}`;
         const entry = faults.get(key) ?? { kind, text, variants: [] };
-        entry.variants.push(variant);
+        entry.variants = [...new Set([...entry.variants, variant])];
         faults.set(key, entry);
       }
     } finally {

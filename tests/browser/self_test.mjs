@@ -104,7 +104,7 @@ try {
       wrong.push(`${name}: the page is not broken`);
       return;
     }
-    const { faults } = await within(60, name, checkPage(tools, await write(name, text), { only: [variant] }));
+    const { faults } = await within(300, name, checkPage(tools, await write(name, text), { only: [variant] }));
     if (!faults.some((fault) => fault.kind === kind)) {
       wrong.push(`${name}: no fault ${kind} in ${variant}; found: ${faults.map((f) => f.kind).join(', ') || 'none'}`);
     }

@@ -44,7 +44,14 @@ pub(crate) fn run(root: &Path) -> Outcome {
     };
     let (long, short) = (scenario("long.toml", SAMPLES)?, scenario("short.toml", NUMPY_SAMPLES)?);
     let simulate = |file: &Path, substeps: &str| {
-        Cmd::new(&program, &folder).arg("run").arg(file).args(["--json", "--substeps", substeps])
+        Cmd::new(&program, &folder).arg("run").arg(file).args([
+            "--json",
+            "--quiet",
+            "--threads",
+            "1",
+            "--substeps",
+            substeps,
+        ])
     };
     let ours = total_iae(&simulate(&short, "1").capture()?)?;
 
