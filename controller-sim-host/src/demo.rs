@@ -2,8 +2,12 @@
 
 mod files;
 
-use crate::output::{FileError, FileTarget};
-use crate::scenario::{Files, closest};
+use crate::output::{FileError, FileTarget, publish};
+use crate::scenario::{Files, closest, read_with};
+use crate::simulate::Precision;
+use std::cell::RefCell;
+use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The text of the first built-in scenario, `scenarios/demo.toml`.
@@ -54,16 +58,32 @@ impl BuiltIn {
     /// The files that it may name: those beside it.
     #[must_use]
     pub fn files(&self) -> impl Files + use<> {
-        Beside(self.path.rsplit_once('/').map_or("", |(folder, _)| folder))
+        self.beside()
+    }
+
+    fn beside(&self) -> Beside {
+        let folder = self.path.rsplit_once('/').map_or("", |(folder, _)| folder);
+        Beside { folder, seen: RefCell::default() }
+    }
+
+    /// The files that it names, each once: names and texts.
+    fn named_files(&self) -> Vec<(String, &'static str)> {
+        let files = self.beside();
+        // Built-in scenarios have no faults, and what is named is seen in any case.
+        let _ = read_with(self.name(), self.text, Precision::F64, &files);
+        files.seen.into_inner()
     }
 }
 
-/// The built-in files of a folder below `scenarios/`.
-struct Beside(&'static str);
+/// The built-in files of a folder below `scenarios/`, and which of them were asked for.
+struct Beside {
+    folder: &'static str,
+    seen: RefCell<Vec<(String, &'static str)>>,
+}
 
 impl Files for Beside {
     fn load(&self, path: &str) -> Result<String, String> {
-        let mut parts: Vec<&str> = self.0.split('/').filter(|part| !part.is_empty()).collect();
+        let mut parts: Vec<&str> = self.folder.split('/').filter(|part| !part.is_empty()).collect();
         for part in path.split('/') {
             match part {
                 "." | "" => {}
@@ -72,8 +92,14 @@ impl Files for Beside {
             }
         }
         let full = parts.join("/");
-        let found = files::ALL.iter().find(|(name, _)| *name == full);
-        found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| format!("there is no built-in file `{path}`"))
+        let Some((_, text)) = files::ALL.iter().find(|(name, _)| *name == full) else {
+            return Err(format!("there is no built-in file `{path}`"));
+        };
+        let mut seen = self.seen.borrow_mut();
+        if seen.iter().all(|(name, _)| name != path) {
+            seen.push((path.to_owned(), text));
+        }
+        Ok((*text).to_owned())
     }
 }
 
@@ -114,22 +140,36 @@ fn is_same_part(a: &str, b: &str) -> bool {
     a == b || number(a).is_some_and(|n| number(b) == Some(n))
 }
 
-/// Writes a text to `path`, or to the next free name when that exists and `force` is not given. Gives the path that was
-/// written.
+/// Writes a built-in scenario to `path`, or to the next free name when that exists and `force` is not given, and beside it
+/// the files it names under the names it has for them: all or none. One of these that is there with the same bytes stays.
+/// Gives the paths that were written, that of the scenario first.
 ///
 /// # Errors
-/// A file that cannot be written; a path that is no file.
-pub fn save(text: &str, path: &Path, force: bool) -> Result<PathBuf, FileError> {
+/// A file that cannot be written; a path that is no file; without `force` another file of the name of one of these.
+pub fn save(scenario: &BuiltIn, path: &Path, force: bool) -> Result<Vec<PathBuf>, FileError> {
     let target = FileTarget::next_free(path, force)?;
-    target.write(|to| to.write_all(text.as_bytes()))?;
-    Ok(target.path().to_owned())
+    let mut files = vec![(target, scenario.text)];
+    for (name, text) in scenario.named_files() {
+        let beside = path.with_file_name(name);
+        if fs::read(&beside).is_ok_and(|bytes| bytes == text.as_bytes()) {
+            continue;
+        }
+        files.push((FileTarget::new(&beside, force)?, text));
+    }
+    let mut complete = Vec::new();
+    for (target, text) in &files {
+        let mut draft = target.create()?;
+        draft.write_all(text.as_bytes()).map_err(|error| target.failed(&error))?;
+        complete.push(draft.complete()?);
+    }
+    publish(complete)?;
+    Ok(files.iter().map(|(target, _)| target.path().to_owned()).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::collections::BTreeMap;
-    use std::fs;
 
     /// Every file below `folder` with its path from there.
     fn on_disc(folder: &Path, before: &str, list: &mut BTreeMap<String, String>) {

@@ -51,11 +51,13 @@ fn save(name: &str, found: &[BuiltIn], path: &Path, force: bool, json: bool) -> 
             Problem::new("usage", format!("`{name}` are {} scenarios; one can be saved", found.len()));
         return Err(problem.help(format!("give one of their names: {}", names.join(", "))).into());
     };
-    let saved = demo::save(one.text, path, force)?;
-    let shown = saved.display().to_string();
+    let saved = demo::save(one, path, force)?;
+    let mut saved = saved.iter().map(|path| path.display().to_string());
+    let (first, others) = (saved.next().unwrap_or_default(), saved.collect::<Vec<_>>());
     Ok(print(&if json {
-        saved_json(&shown)
+        saved_json(&first, &others)
     } else {
-        format!("wrote {shown}; run it with: controller-sim run {}\n", quoted(&shown))
+        let others: String = others.iter().map(|path| format!("wrote {path}, which it reads\n")).collect();
+        format!("wrote {first}; run it with: controller-sim run {}\n{others}", quoted(&first))
     })?)
 }

@@ -37,5 +37,6 @@ pub(super) fn plain(error: &clap::Error) -> Problem {
     // What is missing stands on the lines below.
     let listed: Vec<&str> = lines.take_while(|line| line.starts_with(['<', '-', '['])).collect();
     let problem = Problem::new("usage", format!("{first} {}", listed.join(" ")).trim());
-    problem.help("see `controller-sim --help`")
+    let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: "));
+    problem.help(tip.unwrap_or("see `controller-sim --help`"))
 }

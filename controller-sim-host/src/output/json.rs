@@ -215,14 +215,15 @@ fn places<'a>(name: &'a str, text: &'a str, faults: &'a [Fault]) -> impl Iterato
     })
 }
 
-/// That a built-in scenario was saved: `{"saved": PATH}`.
+/// That a built-in scenario was saved, with the files it reads: `{"saved": PATH, "files": [PATH, ...]}`.
 #[must_use]
-pub fn saved_json(path: &str) -> String {
+pub fn saved_json(path: &str, files: &[String]) -> String {
     #[derive(Serialize)]
     struct Saved<'a> {
         saved: &'a str,
+        files: &'a [String],
     }
-    text(&Saved { saved: path })
+    text(&Saved { saved: path, files })
 }
 
 /// What is built in, names and titles: `{"scenarios": [{"name", "title"}]}`.

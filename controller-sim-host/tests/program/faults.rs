@@ -74,6 +74,22 @@ fn wrong_arguments() {
     }
 }
 
+#[test]
+fn a_near_miss_is_named() {
+    let folder = Folder::new("near-miss");
+    for (arguments, meant) in [
+        (&["run", "s.toml", "--reprot", "r.html"][..], "'--report'"),
+        (&["demo", "--lst"], "'--list'"),
+        (&["rum", "s"], "'run'"),
+        (&["completions", "bsh"], "'bash'"),
+    ] {
+        let shown = folder.refused(arguments);
+        assert!(shown.contains(meant), "{shown}");
+        let error = &json(&folder.run(&[arguments, &["--json"]].concat()))["error"];
+        assert!(error["help"].as_str().is_some_and(|help| help.contains(meant)), "{error}");
+    }
+}
+
 /// What people try first, and what they are told.
 #[test]
 fn wrong_arguments_have_a_help() {

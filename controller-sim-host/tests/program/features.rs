@@ -81,7 +81,7 @@ fn a_fault_in_an_included_file_has_its_place_there() {
 fn a_recording_that_a_scenario_plays_is_not_overwritten() {
     let folder = Folder::new("recording");
     folder.write("load.csv", "t,d\n0,0\n5,1\n10,0.5\n");
-    let change = "disturbance = { file = \"load.csv\", column = \"d\" }";
+    let change = "disturbance = { csv = \"load.csv\", column = \"d\" }";
     folder.write("s.toml", &BASE.replacen("disturbance = 1.0", change, 1));
     folder.done(&["run", "s.toml"]);
     let shown = folder.refused(&["run", "s.toml", "--csv", "load.csv", "--force"]);

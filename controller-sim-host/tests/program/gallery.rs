@@ -34,8 +34,16 @@ fn the_gallery_is_listed_and_everything_in_it_runs() {
         let (name, title) = (one["name"].as_str().expect("a name"), one["title"].as_str().expect("a title"));
         assert!(line.starts_with(&format!("{name} ")) && line.ends_with(title), "{line}");
         let run = json(&folder.run(&["demo", name, "--json"]));
-        let run = if run["runs"].is_array() { &run["runs"][0] } else { &run };
-        assert_eq!(run["scenario"], name);
+        let first = if run["runs"].is_array() { &run["runs"][0] } else { &run };
+        assert_eq!(first["scenario"], name);
+        // Saved with all that it reads, it is the same.
+        let saved = Folder::new(&format!("gallery-{name}"));
+        let paths = json(&saved.run(&["demo", name, "--save", "s.toml", "--json"]));
+        assert_eq!(saved.names().len(), 1 + paths["files"].as_array().map_or(0, Vec::len));
+        let again = json(&saved.run(&["run", "s.toml", "--json"]));
+        let again = if again["runs"].is_array() { &again["runs"][0] } else { &again };
+        assert_eq!(first["controllers"], again["controllers"], "{name}");
+        assert_eq!(first["plant"], again["plant"], "{name}");
     }
     assert_eq!(folder.names(), [] as [&str; 0]);
 }
