@@ -5,13 +5,8 @@ use controller_sim_host::simulate::Metrics;
 use controller_tests::oracle::de_cases::{CASES, DeCase, IaePair};
 
 /// A scenario and its process; the disturbance comes at the second event.
-const FIGURES: [(&str, usize); 5] = [
-    ("figures/de-fig-06", 0),
-    ("figures/de-fig-07", 1),
-    ("figures/de-fig-11", 2),
-    ("figures/de-fig-12", 3),
-    ("figures/de-fig-14", 4),
-];
+const FIGURES: [(&str, usize); 5] =
+    [("de-fig-06", 0), ("de-fig-07", 1), ("de-fig-11", 2), ("de-fig-12", 3), ("de-fig-14", 4)];
 
 const PROCESSES: [(&str, usize); 6] = [
     ("chapter-gp1", 0),
@@ -105,7 +100,7 @@ fn an_exact_model_leaves_tracking_alone_and_another_one_does_not() {
     let size = |page: &Page, to: f64| {
         page.samples("DE-MOMI", 0.0, to).iter().fold(0.0_f64, |a, s| a.max(s.u_f.abs()))
     };
-    let (exact, other) = (Page::new("figures/de-fig-06"), Page::new("figures/de-fig-07"));
+    let (exact, other) = (Page::new("de-fig-06"), Page::new("de-fig-07"));
     assert!(size(&exact, 15.0) < 1e-9, "{}", size(&exact, 15.0));
     assert!(size(&other, 2.0) > 0.1, "{}", size(&other, 2.0));
     let tv = |page: &Page, who: &str| page.after(TRACKING, who).tv;
@@ -117,7 +112,7 @@ fn an_exact_model_leaves_tracking_alone_and_another_one_does_not() {
 /// The law (4) for AH, as the reference has it: 0.355 and 0.0258. It is the oscillatory one.
 #[test]
 fn the_fourth_method_of_figure_14() {
-    let page = Page::new("figures/de-fig-14");
+    let page = Page::new("de-fig-14");
     let (t, d) = both(&page, "AH");
     near("tracking", t.iae, 0.355_111_543_904_719_55, IAE_TOLERANCE);
     near("rejection", d.iae, 0.025_806_286_444_607_984, IAE_TOLERANCE);
@@ -134,9 +129,7 @@ fn the_fourth_method_of_figure_14() {
 /// (GP3) and 10.6 (GP4), which has two digits.
 #[test]
 fn the_noise_of_the_output() {
-    for (name, index, de, half_unit) in
-        [("figures/de-fig-11", 2, 8.6, 0.05), ("figures/de-fig-12", 3, 10.6, 0.05)]
-    {
+    for (name, index, de, half_unit) in [("de-fig-11", 2, 8.6, 0.05), ("de-fig-12", 3, 10.6, 0.05)] {
         let mut scenario = Page::scenario(name);
         scenario.events.clear();
         scenario.duration = 1600.0;
@@ -164,7 +157,7 @@ fn the_noise_of_the_output() {
 #[test]
 fn the_descriptions_of_the_figures_say_what_the_runs_give() {
     let iae = |page: &Page, who: &str| (page.after(TRACKING, who).iae, page.after(REJECTION, who).iae);
-    let page = Page::new("figures/de-fig-06");
+    let page = Page::new("de-fig-06");
     let (momi, drmo, de) = (iae(&page, "MOMI"), iae(&page, "DRMO"), iae(&page, "DE-MOMI"));
     page.says(&[
         ("0.508", de.1),
@@ -174,25 +167,25 @@ fn the_descriptions_of_the_figures_say_what_the_runs_give() {
         ("1.248", momi.0),
         ("2.46", drmo.0),
     ]);
-    let page = Page::new("figures/de-fig-07");
+    let page = Page::new("de-fig-07");
     page.says(&[
         ("0.702", iae(&page, "DE-MOMI").1),
         ("1.31", iae(&page, "DRMO").1),
         ("1.56", iae(&page, "MOMI").1),
     ]);
-    let page = Page::new("figures/de-fig-11");
+    let page = Page::new("de-fig-11");
     page.says(&[
         ("0.191", iae(&page, "DE-MOMI").1),
         ("0.345", iae(&page, "DRMO").1),
         ("0.528", iae(&page, "MOMI").1),
     ]);
-    let calm = Page::of(quiet(Page::scenario("figures/de-fig-11")));
+    let calm = Page::of(quiet(Page::scenario("de-fig-11")));
     page.says(&[
         ("0.181", iae(&calm, "DE-MOMI").1),
         ("0.338", iae(&calm, "DRMO").1),
         ("0.532", iae(&calm, "MOMI").1),
     ]);
-    let page = Page::new("figures/de-fig-12");
+    let page = Page::new("de-fig-12");
     page.says(&[
         ("2.88", iae(&page, "DE-MOMI").1),
         ("4.04", iae(&page, "DRMO").1),
@@ -200,7 +193,7 @@ fn the_descriptions_of_the_figures_say_what_the_runs_give() {
     ]);
     let ie = |who: &str| page.after(REJECTION, who).ie.abs();
     assert!(ie("DRMO") < ie("MOMI"));
-    let page = Page::new("figures/de-fig-14");
+    let page = Page::new("de-fig-14");
     let (momi, drmo, de) = (iae(&page, "MOMI"), iae(&page, "DRMO"), iae(&page, "DE-MOMI"));
     page.says(&[("0.0176", de.1), ("0.0564", drmo.1), ("0.189", momi.1), ("0.216", de.0), ("0.218", momi.0)]);
 }

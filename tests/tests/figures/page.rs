@@ -1,12 +1,16 @@
 //! A built-in scenario with its result.
 
-use controller_sim_host::scenario::{Scenario, read};
+use controller_sim_host::demo::{self, BuiltIn};
+use controller_sim_host::scenario::{Case, Scenario, read_with};
 use controller_sim_host::simulate::{Metrics, Precision, RunOptions, RunResult, Sample, run};
-use std::path::PathBuf;
 
-/// Where the scenarios are.
-pub(crate) fn folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../controller-sim-host/scenarios"))
+/// All cases of a built-in scenario, whose text may have been changed; there must be nothing to warn of.
+pub(crate) fn cases(built_in: &BuiltIn, text: &str, precision: Precision) -> Vec<Case> {
+    let name = built_in.name();
+    let read = read_with(name, text, precision, &built_in.files());
+    let read = read.unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
+    assert!(read.warnings.is_empty(), "{name}: {:?}", read.warnings);
+    read.cases
 }
 
 /// A scenario and what came out of it.
@@ -21,20 +25,28 @@ impl Page {
         Self::of(Self::scenario(name))
     }
 
-    /// The scenario of this name, such as `windup` or `figures/de-fig-06`.
+    /// The scenario of this name, such as `windup` or `de-fig-06`.
     pub(crate) fn scenario(name: &str) -> Scenario {
         Self::edited(name, &[])
     }
 
     /// The scenario of this name after replacing text, each of which must be there.
     pub(crate) fn edited(name: &str, replace: &[(&str, &str)]) -> Scenario {
-        let path = folder().join(format!("{name}.toml"));
-        let mut text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let mut cases = Self::swept(name, replace);
+        assert_eq!(cases.len(), 1, "{name} is a sweep");
+        cases.remove(0)
+    }
+
+    /// The scenarios of a sweep, in order.
+    pub(crate) fn swept(name: &str, replace: &[(&str, &str)]) -> Vec<Scenario> {
+        let built_in =
+            demo::all().find(|one| one.name() == name).unwrap_or_else(|| panic!("no scenario {name}"));
+        let mut text = built_in.text.to_owned();
         for (from, to) in replace {
             assert!(text.contains(from), "{name}: {from} is not in the file");
             text = text.replace(from, to);
         }
-        read(&text, Precision::F64).unwrap_or_else(|faults| panic!("{name}: {faults:?}")).scenario
+        cases(&built_in, &text, Precision::F64).into_iter().map(|case| case.scenario).collect()
     }
 
     /// A scenario that was changed, run.
