@@ -70,7 +70,7 @@ fn a_case_is_the_scenario_with_that_value() {
         ),
         ("controller.2.observer.model", vec!["\"1/(1+s)\"", "{ fopdt = { gain = 1, tau = 2 } }"]),
         ("noise.std", vec!["0", "0.5"]),
-        ("actuator", vec!["{ lo = -1 }", "{ lo = -2, read_back = true }"]),
+        ("actuator", vec!["{ rate = 3 }", "{ lo = -2, read_back = true }"]),
     ] {
         let found = cases(&format!("key = \"{key}\"\nvalues = [{}]", values.join(", ")));
         let expected: Vec<Scenario> = values

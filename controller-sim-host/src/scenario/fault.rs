@@ -30,7 +30,7 @@ pub mod code {
     pub const NOT_SUPPORTED: &str = "not-supported";
     /// A file that a scenario names and that cannot be read.
     pub const FILE: &str = "file";
-    /// A recording with a mistake in it.
+    /// A recording with a mistake in it; as a warning, one that is shorter or longer than the run.
     pub const RECORDING: &str = "recording";
     /// More samples or a longer dead time than the program handles.
     pub const TOO_LARGE: &str = "too-large";
@@ -40,10 +40,12 @@ pub mod code {
     pub const SIGN: &str = "sign";
     /// Warning: a set-point or an output outside the range of a controller, which moves it there.
     pub const CLAMPED: &str = "clamped";
-    /// Warning: a set-point outside the range of valid measurements.
+    /// Warning: a set-point outside the range of valid measurements or of the sensor.
     pub const OUT_OF_MEASUREMENT: &str = "out-of-measurement";
     /// Warning: a signal that the sampling does not show as it is.
     pub const ALIASING: &str = "aliasing";
+    /// Warning: an integral term that goes on where the actuator has stopped.
+    pub const WIND_UP: &str = "wind-up";
     /// Warning: a change without any effect.
     pub const NO_EFFECT: &str = "no-effect";
 }

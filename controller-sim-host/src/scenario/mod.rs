@@ -16,6 +16,7 @@ mod library;
 mod log;
 mod models;
 mod number;
+mod oddities;
 mod override_key;
 mod pid;
 mod places;

@@ -31,7 +31,7 @@ pub(super) fn read(table: &Table<'_>) -> Option<Located<TransferFunction>> {
     };
     match form {
         "tf" => expression::read(table, "tf"),
-        "num" => polynomials(table, dead_time?),
+        "num" => polynomials(table, dead_time),
         "fopdt" => table.table("fopdt", FOPDT).and_then(fopdt),
         "sopdt" => table.table("sopdt", SOPDT).and_then(sopdt),
         _ => table.table("ipdt", IPDT).and_then(ipdt),
@@ -88,14 +88,14 @@ fn dead_time_of_polynomials(table: &Table<'_>, given: &[&'static str]) -> Option
 }
 
 /// `num`, `den`, descending.
-fn polynomials(table: &Table<'_>, dead_time: f64) -> Option<Located<TransferFunction>> {
+fn polynomials(table: &Table<'_>, dead_time: Option<f64>) -> Option<Located<TransferFunction>> {
     for (key, example) in [("num", "`num = [1.0]`"), ("den", "`den = [2.0, 1.0]`")] {
         if table.span(key).is_none() {
             table.missing(key, &format!("{example}, the coefficients of falling powers of s"));
         }
     }
     let (num, den) = (table.numbers("num", MAX_DEGREE + 1, LIST), table.numbers("den", MAX_DEGREE + 1, LIST));
-    let (num, den) = (num?, den?);
+    let (num, den, dead_time) = (num?, den?, dead_time?);
     for (key, list) in [("num", &num), ("den", &den)] {
         if list.value.iter().all(|c| *c == 0.0) {
             let message = format!("`{} = {}` is 0 for every s", table.name(key), table.log.slice(&list.span));

@@ -4,6 +4,7 @@ use super::events::Placed;
 use super::fault::{Fault, code};
 use super::log::Log;
 use super::number::show_short;
+use super::oddities::{extent, steady};
 use super::places::Places;
 use super::{Change, CompensatorSpec, ControllerSpec, Scenario, Signal};
 use controller_core::Param;
@@ -15,7 +16,8 @@ pub(super) fn warn(scenario: &Scenario, index: usize, events: &[Placed], places:
     let concerned = |placed: &&Placed| placed.event.controller.is_none_or(|only| only == index);
     let events: Vec<&Placed> = events.iter().filter(concerned).collect();
     warn_of_start(scenario, spec, &events, places, log);
-    let mut now = Now { spec, setpoint: scenario.initial.setpoint, manual: None };
+    let start = scenario.initial.setpoint;
+    let mut now = Now { spec, setpoint: start, remote: start, manual: None, rest: scenario.duration };
     // What happens at one time holds together: a wider range may be written below the value that needs it.
     for group in events.chunk_by(|a, b| a.event.at == b.event.at) {
         let before = now.outside();
@@ -29,13 +31,18 @@ pub(super) fn warn(scenario: &Scenario, index: usize, events: &[Placed], places:
                         parameters = Some(span);
                     }
                 }
-                Change::Setpoint(Signal::Step(r)) => now.setpoint = *r,
                 Change::Manual(u) => now.manual = Some(*u),
                 _ => {}
             }
         }
+        now.rest = scenario.duration - group.first().map_or(0.0, |placed| placed.event.at);
         for (change, span) in changes() {
             now.check(change, span, log);
+            match change {
+                Change::Setpoint(signal) => now.setpoint = steady(signal).unwrap_or(now.setpoint),
+                Change::RemoteSetpoint(signal) => now.remote = steady(signal).unwrap_or(now.remote),
+                _ => {}
+            }
         }
         // A range that moved away from a value that stays.
         if let Some(span) = parameters {
@@ -129,8 +136,12 @@ pub(super) fn warn_of_compensators(scenario: &Scenario, events: &[Placed], log: 
 /// A controller and its inputs at a time of the run.
 struct Now<'a> {
     spec: &'a ControllerSpec,
+    /// The steady levels of the set-points.
     setpoint: f64,
+    remote: f64,
     manual: Option<f64>,
+    /// Seconds to the end of the run.
+    rest: f64,
 }
 
 impl Now<'_> {
@@ -145,18 +156,9 @@ impl Now<'_> {
         };
         let limits = [config.limits.lo, config.limits.hi];
         let message = match change {
-            Change::Setpoint(Signal::Step(r)) | Change::RemoteSetpoint(Signal::Step(r)) => {
-                let remote = matches!(change, Change::RemoteSetpoint(_));
-                let what = if remote { "remote set-point" } else { "set-point" };
-                let measurement = [config.measurement_lo, config.measurement_hi];
-                let message = clamped(what, *r, "setpoint", [config.setpoint.lo, config.setpoint.hi]);
-                if message.is_none() && is_outside(*r, measurement) {
-                    let what = format!("the {what} {}", show_short(*r));
-                    let effect = "a measurement there is bad";
-                    let message = outside(&what, "measurement", self.spec, measurement, effect);
-                    warn(code::OUT_OF_MEASUREMENT, message);
-                }
-                message
+            Change::Setpoint(signal) => self.check_setpoint("set-point", signal, self.setpoint, span, log),
+            Change::RemoteSetpoint(signal) => {
+                self.check_setpoint("remote set-point", signal, self.remote, span, log)
             }
             Change::Manual(u) => clamped("manual output", *u, "limits", limits),
             Change::Track(u) => clamped("track output", *u, "limits", limits),
@@ -166,6 +168,38 @@ impl Now<'_> {
         if let Some(message) = message {
             warn(code::CLAMPED, message);
         }
+    }
+
+    /// Warns of a set-point outside the valid measurements; the message when it is outside its own range.
+    fn check_setpoint(
+        &self,
+        name: &str,
+        signal: &Signal,
+        level: f64,
+        span: &Range<usize>,
+        log: &Log<'_>,
+    ) -> Option<String> {
+        let config = &self.spec.config;
+        let [least, most] = extent(signal, level, self.rest)?;
+        let is_step = matches!(signal, Signal::Step(_));
+        let say = |key: &str, range: [f64; 2], effect: &str| {
+            let far = [least, most].into_iter().find(|value| is_outside(*value, range))?;
+            let shown = show_short(far);
+            let what = if is_step {
+                format!("the {name} {shown}")
+            } else {
+                format!("the {name}, which reaches {shown},")
+            };
+            Some(outside(&what, key, self.spec, range, effect))
+        };
+        let own = say("setpoint", [config.setpoint.lo, config.setpoint.hi], "the controller clamps it");
+        let measurement = [config.measurement_lo, config.measurement_hi];
+        if own.is_none()
+            && let Some(message) = say("measurement", measurement, "a measurement there is bad")
+        {
+            log.warn(Fault::new(code::OUT_OF_MEASUREMENT, span.clone(), message));
+        }
+        own
     }
 
     /// What is outside its range now: which, its value, and how to say it.

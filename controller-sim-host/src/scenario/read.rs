@@ -7,6 +7,7 @@ use super::files::NoFiles;
 use super::include::{self, Roots};
 use super::library::Library;
 use super::log::{Log, MOST as MOST_FAULTS};
+use super::oddities::{self, Tables};
 use super::plants::Plant;
 use super::sources::Sources;
 use super::table::Table;
@@ -176,6 +177,8 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
     let controllers: Vec<_> = drafts.iter().map(Draft::spec).collect();
     let places: Vec<_> = drafts.iter().map(Draft::all_places).collect();
     let events = events::read(roots.of("event"), &mut drafts, &context);
+    let tables =
+        Tables { sensor: roots.of("sensor").span("sensor"), actuator: roots.of("actuator").span("actuator") };
     roots.finish();
     if log.count() > 0 {
         return None;
@@ -202,6 +205,7 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
         ranges::warn(&scenario, index, &events, places, log);
     }
     ranges::warn_of_compensators(&scenario, &events, log);
+    oddities::warn(&scenario, &events, &tables, log);
     Some(scenario)
 }
 

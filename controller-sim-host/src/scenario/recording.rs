@@ -68,7 +68,9 @@ pub(super) fn read(table: &Table<'_>, library: &Library<'_>) -> Option<Arc<Recor
     let betweens = [("hold", Between::Hold), ("line", Between::Line)];
     let between = table.choice("between", &betweens).map_or(Between::Hold, |between| between.value);
     let path = path?;
-    if table.log.count() > before {
+    // A key that is misspelt, which is told later, may be what the file is missing.
+    let is_odd = table.written().iter().any(|(key, ..)| *key != "csv" && !KEYS.contains(key));
+    if is_odd || table.log.count() > before {
         return None;
     }
     let wanted = Wanted {

@@ -53,6 +53,46 @@ const OTHER_NAMES: &[(&str, &str)] = &[
     ("automatic", "auto"),
     ("remote", "cascade"),
     ("latched", "acknowledged"),
+    ("k", "gain"),
+    ("t", "tau"),
+    ("time_constant", "tau"),
+    ("t1", "tau1"),
+    ("t2", "tau2"),
+    ("theta", "dead_time"),
+    ("l", "dead_time"),
+    ("wn", "omega"),
+    ("omega_n", "omega"),
+    ("damping", "zeta"),
+    ("numerator", "num"),
+    ("denominator", "den"),
+    ("first_order", "fopdt"),
+    ("foptd", "fopdt"),
+    ("soptd", "sopdt"),
+    ("file", "csv"),
+    ("col", "column"),
+    ("length", "duration"),
+    ("interpolate", "between"),
+    ("linear", "line"),
+    ("zoh", "hold"),
+    ("step_size", "resolution"),
+    ("quantisation", "resolution"),
+    ("quantization", "resolution"),
+    ("slew_rate", "rate"),
+    ("sinus", "sine"),
+    ("random_walk", "walk"),
+    ("frequency", "period"),
+    ("parameter", "key"),
+    ("param", "key"),
+    ("start", "from"),
+    ("stop", "to"),
+    ("n", "count"),
+    ("points", "count"),
+    ("steps", "count"),
+    ("logarithmic", "log"),
+    ("slave", "secondary"),
+    ("name", "label"),
+    ("name", "title"),
+    ("text", "description"),
 ];
 
 /// The one of `known` that `word` was probably meant to be.
@@ -61,8 +101,9 @@ pub(crate) fn closest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     if let Some(equal) = known.iter().find(|k| plain(k) == word) {
         return Some(equal);
     }
-    let other = OTHER_NAMES.iter().find(|(other, _)| *other == word).map(|&(_, name)| name);
-    if let Some(same) = known.iter().find(|&&k| Some(k) == other) {
+    // The same habit may have several names here; only one of them is known in this place.
+    let others = OTHER_NAMES.iter().filter(|(other, _)| *other == word);
+    if let Some(same) = others.filter_map(|(_, name)| known.iter().find(|k| *k == name)).next() {
         return Some(same);
     }
     let length = word.chars().count();

@@ -332,7 +332,8 @@ impl<'a> Table<'a> {
         for (keys, fault) in self.missing.take() {
             // One that stands below a table is reported there.
             let below = |key: &&str| ABOVE_TABLES.contains(key) && !self.log.is_wanted_above(key);
-            if !(self.is_root && keys.iter().any(below)) {
+            let is_own_root = self.is_root && self.offset == 0;
+            if !(is_own_root && keys.iter().any(below)) {
                 self.log.fault(fault);
             }
         }

@@ -1,0 +1,50 @@
+//! Included files and sweeps.
+
+use super::{Case, EVENT, LAST, VERSION};
+
+#[rustfmt::skip]
+pub(crate) const CASES: &[Case] = &[
+    // included files
+    (&[(VERSION, "version = 1\ninclude = 3")], &[("wrong-type", 2, 11, "`include` is a number; the name of a file is needed", "\"loop.toml\"")]),
+    (&[(VERSION, "version = 1\ninclude = [\"loop.toml\", 3]")], &[("wrong-type", 2, 25, "`include` is a number", "")]),
+    (&[(VERSION, "version = 1\ninclude = \"lop.toml\"")], &[("file", 2, 11, "there is no file `lop.toml`", "did you mean `loop.toml`?")]),
+    (&[(VERSION, "version = 1\ninclude = \"two.toml\"")], &[("conflict", 2, 11, "`two.toml` has 2 controllers; an included file has exactly one", "one loop")]),
+    (&[(VERSION, "version = 1\ninclude = \"none.toml\"")], &[("conflict", 2, 11, "`none.toml` has 0 controllers", "")]),
+    (&[(VERSION, "version = 1\ninclude = \"nested.toml\"")], &[("not-supported@nested.toml", 2, 1, "a file that is included cannot include others", "")]),
+    (&[(VERSION, "version = 1\ninclude = \"swept.toml\"")], &[("not-supported@swept.toml", 9, 2, "a file that is included cannot be a sweep", "")]),
+    (&[(VERSION, "version = 1\ninclude = \"json.toml\"")], &[("syntax@json.toml", 1, 1, "this looks like JSON", "")]),
+    (&[(VERSION, "version = 1\ninclude = \"broken.toml\"")], &[("syntax@broken.toml", 3, 12, "a decimal comma", "write `0.5`")]),
+    (&[(VERSION, "version = 1\ninclude = \"faulty.toml\"")], &[("unknown-key@faulty.toml", 8, 9, "unknown key `Kp` in `pid`", "did you mean `kp`?")]),
+    (&[(VERSION, "version = 1\ninclude = \"old.toml\"")], &[("not-supported@old.toml", 1, 11, "`version = 2` is not known", "")]),
+    (&[(VERSION, "version = 1\ninclude = \"loop.toml\""), ("name = \"PID\"", "name = \"designed\"")], &[("duplicate", 18, 8, "there are two controllers named `designed`", "the first one: line 7 of `loop.toml`")]),
+    (&[(VERSION, "version = 1\ninclude = \"loop.toml\""), (EVENT, "limits = { hi = 2 }\ncontroller = \"desined\"")], &[("unknown-name", 16, 14, "there is no controller `desined`", "did you mean \"designed\"?")]),
+    (&[(VERSION, "version = 1\ninclude = \"loop.toml\""), ("ts = 0.01", "ts = -1")], &[("out-of-range", 3, 6, "`ts = -1` is out of range", "")]),
+    (&[(VERSION, "version = 1\ninclud = \"loop.toml\"")], &[("unknown-key", 2, 1, "unknown key `includ`", "did you mean `include`?")]),
+    (&[("[plant]\n", "[plant]\ninclude = \"loop.toml\"\n")], &[("unknown-key", 6, 1, "unknown key `include` in `plant`", "above the first `[table]`")]),
+    // sweeps
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nvalues = [1, 2]")], &[("missing-key", 30, 1, "`sweep.key` is missing", "key = \"latency\"")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"")], &[("missing-key", 30, 1, "`sweep.values` is missing", "`from`, `to` and `count`")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nvalue = [1, 2]")], &[("unknown-key", 32, 1, "unknown key `value` in `sweep`", "did you mean `values`?")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = 1\nvalues = [1, 2]")], &[("wrong-type", 31, 7, "`sweep.key` is a number; a text", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nvalues = 1")], &[("wrong-type", 32, 10, "`sweep.values` is a number; a list is needed", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nvalues = [1]")], &[("out-of-range", 32, 10, "`sweep.values` has 1 values; allowed: 2 to 1000", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nvalues = [0.1, 0.2, 0.1]")], &[("duplicate", 32, 21, "the value `0.1` is there twice", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nvalues = [0.1, 0.2]\ncount = 3")], &[("conflict", 33, 1, "a sweep has either `values`, or `from`, `to` and `count`", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nfrom = 0.1\ncount = 3")], &[("missing-key", 30, 1, "`sweep.to` is missing", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nfrom = 0.1\nto = 0.1\ncount = 3")], &[("conflict", 33, 6, "`sweep.to = 0.1` is `from`", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nfrom = 0.1\nto = 0.2\ncount = 1")], &[("out-of-range", 34, 9, "`sweep.count = 1` is out of range; allowed: 2 to 1000", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"latency\"\nfrom = 0\nto = 1\ncount = 3\nscale = \"log\"")], &[("out-of-range", 32, 8, "`sweep.from = 0` is out of range; allowed: above 0 for `scale = \"log\"`", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"latency\"\nfrom = 0\nto = 1\ncount = 3\nscale = \"lin\"")], &[("unknown-choice", 35, 9, "`sweep.scale = \"lin\"` is not known", "\"linear\"")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"version\"\nvalues = [1, 2]")], &[("conflict", 31, 7, "`version` cannot be swept", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"a..b\"\nvalues = [1, 2]")], &[("unknown-key", 31, 7, "`a..b` is no key: a part of it is empty", "noise.std")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"plant\"\nvalues = [1, 2]")], &[("wrong-type", 31, 7, "`plant` is a table; a single key can be set", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"controller.DB.pid.kp\"\nvalues = [1, 2]")], &[("unknown-name", 31, 7, "there is no `controller` called `DB`", "did you mean \"DE\"?")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"event.9.at\"\nvalues = [1, 2]")], &[("unknown-name", 31, 7, "there is no `event` called `9`", "counted from 1; there are 2")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"latncy\"\nvalues = [1, 2]")], &[("unknown-key", 31, 7, "unknown key `latncy`", "did you mean `latency`?")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"latency\"\nvalues = [0, -1, 2]")], &[("out-of-range", 32, 14, "`latency = -1` is out of range; allowed: 0 to 1e12 s", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"plant.tf\"\nvalues = [\"1/(1+s)\", \"1/(1+S)\"]")], &[("expression", 32, 22, "unknown name `S`", "lower-case")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"controller.PID.pid.kd\"\nvalues = [0, 1e16]")], &[("out-of-range", 32, 14, "`pid.kd = 1e16` is out of range", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"ts\"\nvalues = [0.01, 0.5]")], &[("out-of-range", 32, 17, "with `ts = 0.5`: `pid.tf = 0.119` is out of range; allowed: 0.25 to 1e12 s", "half a sample"), ("out-of-range", 32, 17, "with `ts = 0.5`: `pid.tf = 0.119` is out of range; allowed: 0.25 to 1e12 s", "half a sample")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"latency\"\nfrom = -1\nto = 1\ncount = 3")], &[("out-of-range", 32, 8, "`latency = -1` is out of range", "")]),
+    (&[(LAST, "kfd = 0.69, tfd = 0.06 }\n[sweep]\nkey = \"latency\"\nvalues = [0, 0.1]"), ("kp = 2.35", "Kp = 2.35")], &[("unknown-key", 18, 9, "unknown key `Kp` in `pid`", "")]),
+];

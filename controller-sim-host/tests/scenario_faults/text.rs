@@ -1,0 +1,58 @@
+//! Texts that are no TOML, keys that are unknown, values of the wrong type.
+
+use super::{Case, EVENT, LIMITS};
+
+#[rustfmt::skip]
+pub(crate) const CASES: &[Case] = &[
+    // TOML
+    (&[("ts = 0.01", "ts = 0,01")], &[("syntax", 2, 7, "decimal comma", "write `0.01`")]),
+    (&[("ts = 0.01", "ts =")], &[("syntax", 2, 5, "`ts` has no value", "key = value")]),
+    (&[("ts = 0.01", "ts 0.01")], &[("syntax", 2, 4, "no `=`", "key = value")]),
+    (&[("ts = 0.01", "ts = .01")], &[("syntax", 2, 6, "digits on both sides", "0.5")]),
+    (&[("duration = 20.0", "duration = 20 s")], &[("syntax", 3, 12, "`20 s` is neither", "write the number alone, in seconds: `20`")]),
+    (&[("tf = \"exp(-0.2*s)", "tf = exp(-0.2*s)"), ("(1+s))\"", "(1+s))")], &[("syntax", 6, 6, "neither a number nor a text", "in quotes")]),
+    (&[("(1+s))\"", "(1+s))")], &[("syntax", 6, 36, "no closing quote", "same line")]),
+    (&[("[plant]", "[plant")], &[("syntax", 5, 7, "header is not closed", "write `[plant]`")]),
+    (&[("tf = 0.119 }", "tf = 0.119")], &[("syntax", 18, 52, "closing `}` is missing", "separated by `,`")]),
+    (&[("kp = 2.35,", "kp = 2.35")], &[("syntax", 18, 18, "a `,` is missing here", "separated by `,`")]),
+    (&[("ts = 0.01", "ts = 0.01\nts = 0.02")], &[("duplicate", 3, 1, "`ts` is written twice", "remove one")]),
+    (&[("[[event]]\nat = 10.0", "[event]\nat = 10.0")], &[("duplicate", 12, 2, "two tables `event`", "`[[event]]`")]),
+    (&[("ts = 0.01", "ts = 100ms")], &[("syntax", 2, 6, "`100ms` is neither", "write the number alone, in seconds: `0.1`")]),
+    (&[("kp = 2.35", "kp = 2.35volt")], &[("syntax", 18, 14, "`2.35volt` is neither", "write the number alone: `2.35`")]),
+    (&[("ts = 0.01", "ts: 0.01")], &[("syntax", 2, 3, "a `:` where a `=` belongs", "write `ts = 0.01`")]),
+    (&[("duration = 20.0\n\n[plant]\ntf = \"", "duration: 20.0\n\n[plant]\ntf: \"")], &[("syntax", 3, 9, "a `:` where", "write `duration = 20.0`"), ("syntax", 6, 3, "a `:` where", "write `tf = ")]),
+    (&[("[plant]\n", "plant:\n")], &[("syntax", 5, 6, "a `:` where", "write `[plant]` for a table")]),
+    (&[("kp = 2.35", "kp: 2.35")], &[("syntax", 18, 11, "a `:` where", "write `kp = 2.35`")]),
+    (&[("tf = 0.119 }", "tf = 0.119 }}")], &[("syntax", 18, 54, "this `}` closes nothing", "remove it")]),
+    (&[("kfd = 0.69, tfd = 0.06 }", "kfd = 0.69, tfd = 0.06 }\n}")], &[("syntax", 30, 1, "this `}` closes nothing", "remove it")]),
+    (&[("ts = 0.01", "ts = 0.01 duration = 3")], &[("syntax", 2, 10, "nothing else may stand on this line", "a new line")]),
+    (&[("kp = 2.35, ki", "kp = 2.35,, ki")], &[("syntax", 18, 19, "a `,` with nothing before it", "remove it")]),
+    (&[("ts = 0.01", "ts = = 0.01")], &[("syntax", 2, 6, "one `=` too many", "key = value")]),
+    (&[("ts = 0.01", "ts = 1e")], &[("syntax", 2, 8, "power of ten without digits", "1e3")]),
+    (&[("version = 1", "{\n \"version\": 1,\n \"plant\": { \"tf\": \"1/(1+s)\" }\n}")], &[("syntax", 1, 1, "this looks like JSON", "`[plant]`")]),
+    (&[("version = 1", "a b\nc d\ne f\ng h\ni j\nk l\nm n\no p\nq r\ns t\nu v\nw x")], &[("syntax", 1, 1, "this does not look like a scenario: more than 10", "demo --save")]),
+    // keys
+    (&[("version = 1\n", "")], &[("missing-key", 1, 1, "`version` is missing", "`version = 1`")]),
+    (&[("version = 1", "version = 2")], &[("not-supported", 1, 11, "`version = 2` is not known; this program reads version 1", "version = 1")]),
+    (&[("ts = 0.01", "Ts = 0.01")], &[("unknown-key", 2, 1, "unknown key `Ts`", "did you mean `ts`?")]),
+    (&[("duration = 20.0", "tend = 20.0")], &[("unknown-key", 3, 1, "unknown key `tend`", "did you mean `duration`?")]),
+    (&[("[plant]\ntf", "[plant]\nft")], &[("unknown-key", 6, 1, "unknown key `ft` in `plant`", "did you mean `tf`?")]),
+    (&[("[[event]]\nat = 10", "[[events]]\nat = 10")], &[("unknown-key", 12, 3, "`events`", "did you mean `[[event]]`?")]),
+    (&[("ts = 0.01\n", ""), ("[plant]\n", "[plant]\nts = 0.01\n")], &[("unknown-key", 5, 1, "unknown key `ts` in `plant`", "`ts` belongs above the first `[table]`")]),
+    (&[("duration = 20.0\n", ""), (EVENT, "disturbance = 1.0\nduration = 20.0\nlatency = 0.0")], &[("unknown-key", 14, 1, "unknown key `duration`", "above the first `[table]`"), ("unknown-key", 15, 1, "`latency`", "above the first")]),
+    (&[("version = 1\n", ""), (LIMITS, "version = 1\nsubsteps = 5")], &[("unknown-key", 18, 1, "`version`", "above the first"), ("unknown-key", 19, 1, "`substeps`", "above the first")]),
+    (&[("[plant]\n", "[plant]\nts = 0.01\n")], &[("unknown-key", 6, 1, "unknown key `ts` in `plant`", "")]),
+    (&[("[plant]\n", "[plants]\n")], &[("unknown-key", 5, 2, "`plants`", "did you mean `plant`?")]),
+    (&[(EVENT, "")], &[("missing-key", 12, 1, "changes nothing", "disturbance")]),
+    (&[(EVENT, "colour = 1")], &[("unknown-key", 14, 1, "`colour`", "known keys: at")]),
+    // types
+    (&[("version = 1", "version = \"1\"")], &[("wrong-type", 1, 11, "`version` is a text; a whole number", "`version = 1`")]),
+    (&[("ts = 0.01", "ts = \"0,01\"")], &[("wrong-type", 2, 6, "`ts` is a text; a number", "with a point: `ts = 0.01`")]),
+    (&[("ts = 0.01", "ts = \"10 ms\"")], &[("wrong-type", 2, 6, "`ts` is a text; a number", "in seconds: `0.01`")]),
+    (&[("[plant]", "[[plant]]")], &[("wrong-type", 5, 1, "`plant` is a list; a table", "write `[plant]`")]),
+    (&[("[[event]]\nat = 10.0\ndisturbance = 1.0\n", ""), ("[[event]]", "[event]")], &[("wrong-type", 8, 1, "`event` is a table", "`[[event]]`")]),
+    (&[("tf = \"exp(-0.2*s)/((1+0.2*s)*(1+s))\"", "tf = 1")], &[("wrong-type", 6, 6, "`plant.tf` is a number; a text", "quotes")]),
+    (&[(LIMITS, "limits = 10")], &[("wrong-type", 19, 10, "`limits` is a number; a table", "limits = {")]),
+    (&[(EVENT, "setpoint = { lo = 0.0 }")], &[("wrong-type", 14, 1, "`setpoint` of an event is a number", "setpoint_limits")]),
+    (&[("duration = 20.0", "duration = 20.0\nsubsteps = 5.0")], &[("wrong-type", 4, 12, "a whole number", "`substeps = 5`")]),
+];
