@@ -228,11 +228,15 @@ fn the_description_has_every_status_bit_and_code() {
         code::EXPRESSION,
         code::UNKNOWN_NAME,
         code::NOT_SUPPORTED,
+        code::FILE,
+        code::RECORDING,
         code::TOO_LARGE,
         code::FAST_FILTER,
         code::SIGN,
         code::CLAMPED,
         code::OUT_OF_MEASUREMENT,
+        code::ALIASING,
+        code::WIND_UP,
         code::NO_EFFECT,
     ] {
         assert!(format.contains(&format!("`{code}`")), "`{code}` is missing");
