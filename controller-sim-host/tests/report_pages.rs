@@ -5,28 +5,13 @@ mod report;
 use controller_sim_host::scenario::{Change, ControllerSpec, Event, Noise, Signal, Units};
 use controller_sim_host::simulate::View;
 use report::{Ran, ran, ran_in, write};
-use std::fs;
-use std::path::Path;
 
-const DEMO: &str = include_str!("../scenarios/demo.toml");
-const SENSOR: &str = include_str!("../scenarios/sensor_failure.toml");
-const WINDUP: &str = include_str!("../scenarios/windup.toml");
+const DEMO: &str = include_str!("data/report_demo.toml");
+const SENSOR: &str = include_str!("data/report_sensor.toml");
+const WINDUP: &str = include_str!("data/report_windup.toml");
 
 fn event(at: f64, label: &str, changes: Vec<Change>) -> Event {
     Event { at, label: label.to_owned(), changes, controller: None }
-}
-
-#[test]
-fn the_scenarios_of_the_source_tree() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.extension().is_some_and(|e| e == "toml") {
-            let text = fs::read_to_string(&path).expect("readable");
-            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-            write(&name, &[ran(&name, &text, |_| {})]);
-        }
-    }
 }
 
 #[test]

@@ -6,13 +6,13 @@ use controller_design::model::parse;
 use controller_sim_host::output::run_table;
 use controller_sim_host::report::{Chapter, figure, page};
 use controller_sim_host::scenario::{Change, ControllerSpec, Event, Fault, Noise, Signal, Units};
-use controller_sim_host::simulate::{Precision, View};
+use controller_sim_host::simulate::View;
 use report::{Ran, ran, ran_in};
 use roxmltree::{Document, Node};
 
-const DEMO: &str = include_str!("../scenarios/demo.toml");
-const SENSOR: &str = include_str!("../scenarios/sensor_failure.toml");
-const WINDUP: &str = include_str!("../scenarios/windup.toml");
+const DEMO: &str = include_str!("data/report_demo.toml");
+const SENSOR: &str = include_str!("data/report_sensor.toml");
+const WINDUP: &str = include_str!("data/report_windup.toml");
 const NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
 fn only(run: &Ran) -> String {
@@ -251,7 +251,7 @@ fn no_path_has_a_number_that_is_none() {
 #[test]
 fn the_table_marks_the_same_numbers_as_the_terminal() {
     let run = ran("demo.toml", DEMO, |_| {});
-    let terminal = run_table(&run.scenario, Precision::F64, &run.result);
+    let terminal = run_table(&run.chapter());
     let page = only(&run);
     let best: Vec<&str> = page
         .split("<td class=\"best\"><strong>")
