@@ -5,7 +5,7 @@ use controller_sim_host::demo;
 use controller_sim_host::simulate::Precision;
 
 /// Runs whose remarks are what the page is about: scenario, controller.
-const INTENDED: [(&str, &str); 22] = [
+const INTENDED: [(&str, &str); 19] = [
     ("recorded-load", "PI"),
     ("sensor", "hold, go on"),
     ("sensor", "safe output, wait"),
@@ -15,9 +15,6 @@ const INTENDED: [(&str, &str); 22] = [
     ("level", "averaging"),
     ("actuator", "PI"),
     ("actuator", "PI, dead band"),
-    ("sine-disturbance", "PI"),
-    ("sine-disturbance", "alpha = 10"),
-    ("sine-disturbance", "alpha = 2"),
     ("random-walk", "PI"),
     ("random-walk", "alpha = 100"),
     ("random-walk", "alpha = 10"),

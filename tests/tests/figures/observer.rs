@@ -152,8 +152,9 @@ fn one_late_sample() {
     let end = page.samples("not told, alpha = 0.7", 90.0, 130.0);
     let jumps = end.windows(2).filter(|w| (w[1].u - w[0].u).abs() > 7.9).count();
     assert!(jumps >= 30, "{jumps} jumps in 40 samples");
+    // Calm: a hundredth of the range from sample to sample.
     let calm = page.samples("told, alpha = 0.7", 140.0, 160.0);
-    assert!(calm.windows(2).all(|w| (w[1].u - w[0].u).abs() < 0.01));
+    assert!(calm.windows(2).all(|w| (w[1].u - w[0].u).abs() < 0.08));
 
     // Said as latency, all are calm.
     let told = [
@@ -164,7 +165,7 @@ fn one_late_sample() {
     let page = Page::of(Page::edited("latency", &told));
     for controller in &page.result.controllers {
         let trace = page.samples(&controller.name, 60.0, 80.0);
-        assert!(trace.windows(2).all(|w| (w[1].u - w[0].u).abs() < 0.01), "{}", controller.name);
+        assert!(trace.windows(2).all(|w| (w[1].u - w[0].u).abs() < 0.08), "{}", controller.name);
     }
 }
 

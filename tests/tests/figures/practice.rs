@@ -121,7 +121,8 @@ fn a_cascade() {
     let ki = 3.5 / 88.0;
     page.says(&[("251", 10.0 / ki)]);
     let mut long = page.scenario.clone();
-    long.duration += 2000.0;
+    long.events[1].at += 2000.0;
+    long.duration += 4000.0;
     let long = Page::of(long);
     near("IE", long.after(load, "one loop").ie, 10.0 / ki, 1e-4);
     assert!(long.after(load, "cascade").ie.abs() < 1e-3 * 10.0 / ki, "{:?}", long.after(load, "cascade"));
