@@ -90,7 +90,7 @@ export async function print(page, paper, pdf) {
     });
     const wide = document.documentElement.scrollWidth;
     if (wide > document.documentElement.clientWidth) {
-      found.push({ kind: 'print-overflow', text: `${wide} px on a sheet of ${sheet.width} px` });
+      found.push({ kind: 'print-overflow', text: `${wide} px on a sheet of ${sheet.width} px: all of it is shrunk` });
     }
     return { faults: found, height: document.documentElement.scrollHeight };
   }, paper);

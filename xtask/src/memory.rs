@@ -32,8 +32,11 @@ struct Form {
 
 /// Figures alone, and figures with a page.
 const FORMS: [Form; 2] = [
-    Form { name: "figures", args: &["--json", "--quiet"] },
-    Form { name: "report", args: &["--json", "--quiet", "--force", "--report", "memory.html"] },
+    Form { name: "figures", args: &["--json", "--quiet", "--substeps", "1"] },
+    Form {
+        name: "report",
+        args: &["--json", "--quiet", "--substeps", "1", "--force", "--report", "memory.html"],
+    },
 ];
 
 /// The share of the ladder; a remark for the summary. `None` where memory cannot be measured.
