@@ -43,7 +43,7 @@ figure { margin: 0; break-inside: avoid; }
 `;
 
 // Put together here: a page must ask for something outside, but no address stands in the sources.
-const outside = (scheme, file) => [`${scheme}:`, '', 'nowhere.invalid', file].join('/');
+const outside = (scheme, file) => [`${scheme}:`, '', 'nowhere', file].join('/');
 const body = (html) => ['</main>', `${html}</main>`];
 const css = (rules) => ['</style>', `${rules}</style>`];
 

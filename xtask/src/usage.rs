@@ -10,7 +10,7 @@ use crate::shell::{Cmd, Outcome};
 pub(crate) struct Usage {
     /// Time of the processor, over all threads. Other programs on the machine disturb it far less than the clock.
     pub(crate) cpu: Duration,
-    /// Most memory in use at one time \[kB\].
+    /// Most memory in use at one time \[kB\]; at least that of this program, which the system counts for its children.
     pub(crate) peak: u64,
 }
 
