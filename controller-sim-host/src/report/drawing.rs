@@ -69,7 +69,7 @@ pub(super) fn shown(chapter: &Chapter<'_>, loops: &[Loop<'_>]) -> (f64, f64) {
 /// Draws a run.
 pub(super) fn draw(chapter: &Chapter<'_>, loops: &[Loop<'_>]) -> Drawing {
     let time = shown(chapter, loops);
-    let axis = Axis::of_time(time.0, time.1, 6);
+    let axis = Axis::of_time(time.0, time.1, 9);
     let marks = marks(chapter.scenario, axis.range());
     let panels = panels(chapter.scenario, loops);
     let bands: Vec<Bands> = loops.iter().flat_map(bands).collect();
@@ -100,7 +100,7 @@ pub(super) fn draw(chapter: &Chapter<'_>, loops: &[Loop<'_>]) -> Drawing {
 }
 
 fn draw_panel(panel: &Panel<'_>, loops: &[Loop<'_>], time: (f64, f64), axis: &Axis, top: f64) -> Markup {
-    let most = (panel.height / 40.0) as usize;
+    let most = (panel.height / 33.0) as usize;
     let values = Axis::of_values(panel.range(), most.max(2));
     let share = |value: f64| values.share(value);
     let bottom = top + panel.height;
@@ -174,7 +174,9 @@ fn time_axis(axis: &Axis, y: f64) -> Markup {
         line class="axis" x1="0" x2="100%" y1=(pixel(y)) y2=(pixel(y)) {}
         @for tick in &axis.ticks {
             line class="axis" x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(y)) y2=(pixel(y + 4.0)) {}
-            text class="t" x=(percent(tick.share)) y=(pixel(y + 17.0)) { (tick.label) }
+            text class={ "t" @if tick.minor { " wide" } } x=(percent(tick.share)) y=(pixel(y + 17.0)) {
+                (tick.label)
+            }
         }
         @for share in &axis.between {
             line class="axis" x1=(percent(*share)) x2=(percent(*share)) y1=(pixel(y)) y2=(pixel(y + 2.5)) {}

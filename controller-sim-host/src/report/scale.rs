@@ -16,9 +16,14 @@ const RATIO: f64 = 30.0;
 pub(super) struct Tick {
     /// Its place, from 0 to 1.
     pub(super) share: f64,
-    /// Its number; empty: a mark only.
+    /// Its number.
     pub(super) label: String,
+    /// It is left out where there is room for half of the numbers only.
+    pub(super) minor: bool,
 }
+
+/// Most numbers of an axis of time on a narrow page.
+const FEW: usize = 6;
 
 /// An axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +76,7 @@ impl Axis {
         let tick = |e: i32| Tick {
             share: (f64::from(e) - start) / (end - start),
             label: if (-3..5).contains(&e) { decimal(1, e) } else { format!("10{}", superscript(e)) },
+            minor: false,
         };
         let all = (start.floor() as i32..=end.ceil() as i32).filter(|e| e % every == 0).map(tick);
         let ticks = all.filter(|tick| (0.0..=1.0).contains(&tick.share)).collect();
@@ -90,6 +96,7 @@ impl Axis {
         let tick = |i: i64| Tick {
             share: ((i as f64 * step - start) / (end - start)).clamp(0.0, 1.0),
             label: decimal(i * mantissa, e - power),
+            minor: i % 2 != 0 && (last - first) as usize >= FEW,
         };
         let ticks = (first..=last).map(tick).collect();
         let parts = if mantissa == 2 { 4 } else { 5 };
