@@ -110,10 +110,10 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
             }
         };
     let none = String::new;
-    add("kp", format!("{u}/{y}"), true, &|c| Some(show(c.config.pid.kp)));
-    add("ki", format!("{u}/({y} s)"), true, &|c| Some(show(c.config.pid.ki)));
-    add("kd", format!("{u} s/{y}"), true, &|c| Some(show(c.config.pid.kd)));
-    add("tf", "s".to_owned(), true, &|c| Some(show(c.config.pid.tf)));
+    add("kp", format!("{u}/{y}"), true, &|c| Some(gain(c.config.pid.kp)));
+    add("ki", format!("{u}/({y} s)"), true, &|c| Some(gain(c.config.pid.ki)));
+    add("kd", format!("{u} s/{y}"), true, &|c| Some(gain(c.config.pid.kd)));
+    add("tf", "s".to_owned(), true, &|c| Some(gain(c.config.pid.tf)));
     add("b", none(), true, &|c| Some(show(c.config.pid.b)));
     add("c", none(), true, &|c| Some(show(c.config.pid.c)));
     add("action", none(), false, &|c| (c.config.pid.action == Action::Direct).then(|| "direct".to_owned()));
@@ -242,4 +242,9 @@ fn model(model: &PlantModel) -> String {
         [only] => format!("{top}/{only}"),
         several => format!("{top}/({})", several.join("*")),
     }
+}
+
+/// Seven digits: a gain that was converted from another form has more, and nobody reads them.
+fn gain(x: f64) -> String {
+    show(format!("{x:.6e}").parse().unwrap_or(x))
 }

@@ -19,6 +19,8 @@ pub(super) struct Watch {
     /// Largest error in each tenth of the run.
     tenths: [f64; 10],
     tenth: usize,
+    /// Largest error of the last fiftieth, which an event shortly before the end does not reach.
+    end: f64,
     /// The sample with which the next tenth begins, and the length of the run in samples.
     next_tenth: u64,
     count: u64,
@@ -48,6 +50,9 @@ impl Watch {
         let e = e.abs();
         if e > self.tenths[self.tenth] {
             self.tenths[self.tenth] = e;
+        }
+        if k >= self.count - self.count / 50 - 1 && e > self.end {
+            self.end = e;
         }
         if status.bits() & TROUBLE == 0 {
             return;
@@ -83,6 +88,7 @@ impl Watch {
         let before = self.tenths[7].min(self.tenths[8]);
         if self.automatic
             && last > 0.9 * before
+            && self.end > 0.5 * last
             && last > 6.0 * noise
             && last > 0.05 * self.tenths.iter().fold(0.0_f64, |a, b| a.max(*b))
         {
