@@ -8,9 +8,11 @@ use controller_core::{
 use controller_design::model::parse;
 use controller_sim_host::demo;
 use controller_sim_host::scenario::{
-    Actuator, Change, CompensatorSpec, ControllerSpec, Event, Initial, Noise, Scenario, Signal, code, read,
+    Actuator, Change, CompensatorSpec, ControllerSpec, Event, FolderFiles, Initial, Noise, Scenario, Signal,
+    code, read, read_with,
 };
 use controller_sim_host::simulate::Precision;
+use std::path::{Path, PathBuf};
 
 fn everything() -> Scenario {
     let read = read(include_str!("data/everything.toml"), Precision::F64).expect("no faults");
@@ -174,17 +176,27 @@ fn an_event_without_a_name_changes_all() {
     assert_eq!(limits, [(0, -10.0, 5.0), (1, -1e6, 5.0), (2, -1e6, 5.0)]);
 }
 
+/// All scenarios that come with the program, also in the folders below.
+fn scenarios(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let mut all: Vec<_> =
+        files.into_iter().filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    all.extend(folders.iter().flat_map(|folder| scenarios(folder)));
+    all.sort();
+    all
+}
+
 #[test]
-fn the_examples_have_no_faults_and_no_warnings() {
-    for (name, text) in [
-        ("demo", demo::SCENARIO),
-        ("first", include_str!("../scenarios/first.toml")),
-        ("windup", include_str!("../scenarios/windup.toml")),
-        ("sensor", include_str!("../scenarios/sensor.toml")),
-    ] {
+fn the_scenarios_have_no_faults_and_no_warnings() {
+    let all = scenarios(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios"));
+    assert!(all.len() >= 8, "{all:?}");
+    for path in all {
+        let text = std::fs::read_to_string(&path).expect("a text");
         for precision in [Precision::F32, Precision::F64] {
-            let read = read(text, precision).unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
-            assert_eq!(read.warnings, [], "{name}");
+            let read = read_with("scenario", &text, precision, &FolderFiles::beside(&path));
+            let read = read.unwrap_or_else(|faults| panic!("{path:?}: {faults:?}"));
+            assert_eq!(read.warnings, [], "{path:?}");
         }
     }
 }

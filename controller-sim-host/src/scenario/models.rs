@@ -11,6 +11,7 @@ const FORMS: [&str; 5] = ["tf", "num", "fopdt", "sopdt", "ipdt"];
 
 const EXAMPLES: &str =
     "`tf = \"exp(-0.2*s)/(1+s)\"`, or `fopdt = { gain = 1.0, tau = 1.0, dead_time = 0.2 }`";
+const EITHER: &str = "an expression in quotes, or a table such as `{ fopdt = { gain = 1.0, tau = 1.0 } }`";
 const LIST: &str = "the coefficients of falling powers of s: `[2.0, 1.0]` is 2*s+1";
 const FOPDT: &str = "`fopdt = { gain = 1.0, tau = 1.0, dead_time = 0.2 }`";
 const SOPDT: &str = "`sopdt = { gain = 1.0, tau1 = 1.0, tau2 = 0.2, dead_time = 0.2 }`";
@@ -40,10 +41,10 @@ pub(super) fn read(table: &Table<'_>) -> Option<Located<TransferFunction>> {
 
 /// The model that is the value of `key`: an expression, or a table of the other forms.
 pub(super) fn value(table: &Table<'_>, key: &'static str) -> Option<Located<TransferFunction>> {
-    if !table.is_table(key) {
+    if table.is_text(key) {
         return expression::read(table, key);
     }
-    let part = table.table(key, EXAMPLES)?;
+    let part = table.table(key, EITHER)?;
     let model = read(&part);
     part.finish();
     model

@@ -33,7 +33,7 @@ pub(crate) const CASES: &[Case] = &[
     (&[(TF, "ipdt = { dead_time = 1 }")], &[("missing-key", 6, 8, "`plant.ipdt.gain` is missing", "")]),
     (&[(TF, "fopdt = { gain = 1, tau = 1, dead_time = 1e6 }")], &[("too-large", 6, 9, "the plant's dead time and the latency are 1e8 samples long; allowed: at most 1e7", "")]),
     // plants of two parts
-    (&[(TF, "tf = \"exp(-0.2*s)/((1+0.2*s)*(1+s))\"\ninner = 3")], &[("wrong-type", 7, 9, "`plant.inner` is a number; a text is needed", "")]),
+    (&[(TF, "tf = \"exp(-0.2*s)/((1+0.2*s)*(1+s))\"\ninner = 3")], &[("wrong-type", 7, 9, "`plant.inner` is a number; a table is needed", "in quotes, or a table")]),
     (&[(TF, "tf = \"exp(-0.2*s)/((1+0.2*s)*(1+s))\"\ninner = \"1/(1+S)\"")], &[("expression", 7, 15, "unknown name `S`", "")]),
     (&[(TF, "tf = \"exp(-0.2*s)/((1+0.2*s)*(1+s))\"\ninner = { fopdt = { gain = 1 } }")], &[("missing-key", 7, 19, "`plant.inner.fopdt.tau` is missing", "")]),
     (&[(TF, "tf = \"exp(-0.2*s)/((1+0.2*s)*(1+s))\"\ninner = {}")], &[("missing-key", 7, 9, "`plant.inner.tf` is missing", "")]),
@@ -42,7 +42,7 @@ pub(crate) const CASES: &[Case] = &[
     (&[(TF, "tf = \"1/(1+s)^15\"\ninner = \"1/(1+s)^6\"")], &[("expression", 7, 9, "`plant.inner` and the outer part together: ", "")]),
     (&[(TF, "tf = \"exp(-1e5*s)/(1+s)\"\ninner = \"exp(-1e5*s)/(1+s)\"")], &[("too-large", 6, 6, "the plant's dead time and the latency are 2e7 samples", "")]),
     // models of an observer
-    (&[(MODEL, "model = 3")], &[("wrong-type", 24, 22, "`observer.model` is a number; a text is needed", "")]),
+    (&[(MODEL, "model = 3")], &[("wrong-type", 24, 22, "`observer.model` is a number; a table is needed", "in quotes, or a table")]),
     (&[(MODEL, "model = {}")], &[("missing-key", 24, 22, "`observer.model.tf` is missing", "")]),
     (&[(MODEL, "model = { fopdt = { gain = 1 } }")], &[("missing-key", 24, 32, "`observer.model.fopdt.tau` is missing", "")]),
     (&[(MODEL, "model = { num = [1], den = [1, -1] }")], &[("expression", 24, 41, "`observer.model` cannot be used as a model: the pole at s = 1", "")]),
