@@ -2,15 +2,37 @@
 
 use controller_sim_host::demo;
 use controller_sim_host::output::{Severity, Source, Trouble, error_json, render};
-use controller_sim_host::scenario::{Fault, SourceText, read};
+use controller_sim_host::scenario::{Fault, Files, SourceText, override_key, read, read_with};
 use controller_sim_host::simulate::Precision;
 
-const TEXTS: [&str; 4] = [
+const TEXTS: [&str; 5] = [
     demo::SCENARIO,
     include_str!("../scenarios/windup.toml"),
     include_str!("../scenarios/sensor.toml"),
     include_str!("data/base.toml"),
+    SEVERAL,
 ];
+
+/// A scenario with a sweep, and the files that it names.
+const SEVERAL: &str = include_str!("data/several/scenario.toml");
+const DESIGN: &str = include_str!("data/several/loop.toml");
+const LOG: &str = include_str!("data/several/log.csv");
+
+/// The two files, as they are or not.
+struct Two {
+    design: String,
+    log: String,
+}
+
+impl Files for Two {
+    fn load(&self, path: &str) -> Result<String, String> {
+        match path {
+            "loop.toml" => Ok(self.design.clone()),
+            "log.csv" => Ok(self.log.clone()),
+            _ => Err(format!("there is no file `{path}`; did you mean `log.csv`?")),
+        }
+    }
+}
 
 /// What is put in: characters that mean something in TOML or in expressions, and some that mean trouble.
 const PIECES: [&str; 36] = [
@@ -108,11 +130,13 @@ fn mutate(text: &mut String, random: &mut Random) {
 
 fn check(text: &str, faults: &[Fault], severity: Severity) {
     for fault in faults {
+        let own = text;
+        let text = fault.source.as_ref().map_or(own, |source| &source.text);
         for span in std::iter::once(&fault.span).chain(fault.related.as_ref().map(|related| &related.span)) {
             assert!(text.get(span.clone()).is_some(), "{span:?} is not in:\n{text}\n{fault:?}");
         }
         assert!(!fault.message.is_empty() && !fault.message.contains('\n'), "{fault:?}");
-        let place = fault.place(text);
+        let place = fault.place(own);
         assert!(place.line <= text.matches('\n').count() + 1, "{fault:?}");
     }
     let source = Source { name: "fuzz.toml", text };
@@ -127,30 +151,83 @@ fn check(text: &str, faults: &[Fault], severity: Severity) {
     assert!(serde_json::from_str::<serde_json::Value>(&json).is_ok(), "{json}");
 }
 
+/// Whether the text is good; every message of it is checked.
+fn check_reading(text: &str, precision: Precision, files: &dyn Files) -> bool {
+    match read_with("fuzz.toml", text, precision, files) {
+        Ok(read) => {
+            assert!(!read.cases.is_empty());
+            check(text, &read.warnings, Severity::Warning);
+            true
+        }
+        Err(faults) => {
+            assert!(!faults.is_empty(), "no reason given for:\n{text}");
+            check(text, &faults, Severity::Error);
+            false
+        }
+    }
+}
+
 #[test]
 fn no_text_makes_the_reader_panic() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let (mut good, mut bad) = (0, 0);
-    for round in 0..3000 {
+    for round in 0..4000 {
         let mut text = TEXTS[round % TEXTS.len()].to_owned();
+        let mut files = Two { design: DESIGN.to_owned(), log: LOG.to_owned() };
+        let changed = match round % (4 * TEXTS.len()) {
+            4 => &mut files.design,
+            9 => &mut files.log,
+            _ => &mut text,
+        };
         for _ in 0..=random.below(4) {
-            mutate(&mut text, &mut random);
+            mutate(changed, &mut random);
         }
         let precision = if round % 2 == 0 { Precision::F64 } else { Precision::F32 };
-        match read(&text, precision) {
-            Ok(read) => {
-                good += 1;
-                check(&text, &read.warnings, Severity::Warning);
-            }
-            Err(faults) => {
-                bad += 1;
-                assert!(!faults.is_empty(), "no reason given for:\n{text}");
-                check(&text, &faults, Severity::Error);
-            }
+        if check_reading(&text, precision, &files) {
+            good += 1;
+        } else {
+            bad += 1;
         }
     }
     // Both kinds must be among them, or the test shows nothing.
     assert!(good > 100 && bad > 1000, "{good} good, {bad} bad");
+}
+
+/// Any path and any value: either a text that can be read, for better or worse, or a fault inside the old one.
+#[test]
+fn no_key_makes_overriding_panic() {
+    let parts = [
+        "controller",
+        "event",
+        "plant",
+        "inner",
+        "2",
+        "observer",
+        "pid",
+        "kp",
+        "model",
+        "\"",
+        ".",
+        "",
+        "\u{e9}",
+        "title",
+    ];
+    let files = Two { design: DESIGN.to_owned(), log: LOG.to_owned() };
+    let mut random = Random(0x2545_f491_4f6c_dd1d);
+    let (mut good, mut set) = (0, 0);
+    for _ in 0..3000 {
+        let count = 1 + random.below(4);
+        let key: Vec<&str> = (0..count).map(|_| parts[random.below(parts.len())]).collect();
+        let value = PIECES[random.below(PIECES.len())];
+        match override_key(SEVERAL, &key.join("."), value) {
+            Ok(text) => {
+                set += 1;
+                good += usize::from(check_reading(&text, Precision::F64, &files));
+            }
+            Err(fault) => check(SEVERAL, &[fault], Severity::Error),
+        }
+    }
+    assert!(set > 300 && good > 3, "{set} set, {good} good");
 }
 
 #[test]

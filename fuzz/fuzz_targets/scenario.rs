@@ -9,67 +9,9 @@ use controller_sim_host::scenario::{Files, override_key, read, read_with};
 use controller_sim_host::simulate::Precision;
 use libfuzzer_sys::fuzz_target;
 
-const VALID: &str = r#"version = 1
-title = "fuzz"
-include = "loop.toml"
-duration = 20.0
-latency = 0.004
-[units]
-y = "V"
-[plant]
-tf = "exp(-0.2*s)/((1+0.2*s)*(1+s))"
-inner = { sopdt = { gain = 2.0, omega = 9.0, zeta = 0.7, beta = -0.1 } }
-[noise]
-std = 0.001
-seed = 1
-[sensor]
-lo = -9.0
-resolution = 0.01
-[actuator]
-hi = 9.0
-rate = 5.0
-deadband = 0.01
-[[event]]
-at = 0.0
-setpoint = { csv = "log.csv", column = "y", between = "line" }
-[[event]]
-at = 10.0
-label = "load"
-disturbance = { sine = 1.0, period = 2.0, phase = 0.5 }
-measurement = { csv = "log.csv", column = 3, time = 1, scale = 0.1 }
-[[event]]
-at = 12.0
-disturbance = { walk = 0.1, every = 0.5, seed = 3, duration = 5.0 }
-measurement = "plant"
-[[controller]]
-name = "cascade"
-pid = { kp = 2.35, ki = 1.88, kd = 0.48, tf = 0.119, b = 1.0, c = 1.0 }
-limits = { lo = -10.0, hi = 10.0, rate = 50.0 }
-secondary = { pid = { kp = 1.0, ki = 0.5 }, observer = { model = { fopdt = { gain = 2.0, tau = 0.2 } }, alpha = 0.1 } }
-[[controller]]
-name = "observer"
-pid = { kp = 0.8, ki = 0.7 }
-observer = { model = "exp(-0.2*s)/((1+0.2*s)*(1+s))", alpha = 0.1 }
-[sweep]
-key = "controller.observer.pid.kp"
-values = [0.5, 0.8]
-"#;
-
-const LOOP: &str = r#"version = 1
-ts = 0.01
-duration = 10
-[plant]
-num = [1.0]
-den = [2.0, 1.0]
-dead_time = 0.1
-[[controller]]
-name = "estimator"
-pid = { kp = 2.35, ki = 1.88 }
-estimator = { gain = 1.0, a1 = 1.2, a2 = 0.2, dead_time = 0.2, kfd = 0.69, tfd = 0.06 }
-anti_windup = { rule = "back-calculation" }
-"#;
-
-const LOG: &str = "# a log\nt;y;u\ns;V;V\n0;0,5;1\n0,5;0,7;2\n0,5;0,75;2\n20;1;3\n";
+const VALID: &str = include_str!("../../controller-sim-host/tests/data/several/scenario.toml");
+const LOOP: &str = include_str!("../../controller-sim-host/tests/data/several/loop.toml");
+const LOG: &str = include_str!("../../controller-sim-host/tests/data/several/log.csv");
 
 /// Two files, and whatever else is asked for is not there.
 struct Two<'a> {
