@@ -107,9 +107,11 @@ pub(super) fn panels<'a>(scenario: &'a Scenario, loops: &[Loop<'a>]) -> Vec<Pane
             between: Between::Held,
             look: Look::Controller(l.index),
         }));
-        let title = match compensated.len() {
-            0 => "Disturbance d",
-            _ => "Disturbance d, estimate d_hat",
+        // The estimate begins at 0 wherever the loop rests.
+        let title = match (compensated.is_empty(), scenario.initial.disturbance == 0.0) {
+            (true, _) => "Disturbance d",
+            (false, true) => "Disturbance d, estimate d_hat",
+            (false, false) => "Disturbance d, estimated change d_hat",
         };
         list.push(Panel { title, unit: u.clone(), height: 120.0, traces, levels: Vec::new(), least });
     }
