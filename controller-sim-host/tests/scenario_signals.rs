@@ -57,7 +57,7 @@ fn every_kind_of_signal() {
             "{ sine = 3, period = 4, phase = -1.5, duration = 9 }",
             Signal::Sine { amplitude: 3.0, period: 4.0, phase: -1.5, duration: 9.0 },
         ),
-        ("{ walk = 0.1 }", Signal::Walk { std: 0.1, every: 0.5, seed: 1, duration: end }),
+        ("{ walk = 0.1 }", Signal::Walk { std: 0.1, every: 0.5, seed: 2, duration: end }),
         (
             "{ walk = 0.1, every = 2, seed = 7, duration = 30 }",
             Signal::Walk { std: 0.1, every: 2.0, seed: 7, duration: 30.0 },

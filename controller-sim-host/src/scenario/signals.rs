@@ -190,7 +190,8 @@ fn walk(part: &Table<'_>, context: &Context<'_>) -> Option<Signal> {
     };
     let seed = match part.span("seed") {
         Some(_) => part.integer_in("seed", 0, u64::MAX).map(|seed| seed.value),
-        None => Some(1),
+        // Not that of the noise, which would then be the same numbers.
+        None => Some(2),
     };
     let duration = duration(part);
     let (std, every, seed, duration) = (std?.value, every?, seed?, duration?);

@@ -12,7 +12,7 @@ pub(super) const SAME: f64 = 1e-9;
 /// the quotient, which grows with it.
 fn snapped(s: f64) -> f64 {
     let near = s.round();
-    if (s - near).abs() < SAME * (1.0 + near.abs()) { near } else { s }
+    if (s - near).abs() < SAME + 4.0 * f64::EPSILON * near.abs() { near } else { s }
 }
 
 /// A straight line: `value` at the instant `at` (in samples), rising by `slope` per second.
@@ -126,7 +126,7 @@ pub(super) struct Curve {
 impl Curve {
     /// The curve that is `level` before the first of `list`; every instant is shifted by `delay` \[s\].
     pub(super) fn new(level: f64, list: &[(f64, Signal)], delay: f64, ts: f64) -> Self {
-        let mut parts = vec![lines(level, list, delay, ts)];
+        let mut parts = vec![levels(level, list, delay, ts), added(list, delay, ts)];
         let mut sines = Vec::new();
         let sets_level = |signal: &Signal| matches!(signal, Signal::Step(_) | Signal::Recorded(_));
         for (index, (at, signal)) in list.iter().enumerate() {
@@ -263,20 +263,25 @@ impl Curve {
     }
 }
 
-/// Steps, ramps and pulses: changes of level and slope at instants. While a recording has the steady level it is 0 here.
-fn lines(level: f64, list: &[(f64, Signal)], delay: f64, ts: f64) -> Part {
+/// The steady level of steps, each exactly as it is written. While a recording has the level it is 0 here.
+fn levels(level: f64, list: &[(f64, Signal)], delay: f64, ts: f64) -> Part {
+    let mut lines = vec![Line { at: f64::NEG_INFINITY, value: level, slope: 0.0 }];
+    for (at, signal) in list {
+        let value = match signal {
+            Signal::Step(value) => *value,
+            Signal::Recorded(_) => 0.0,
+            _ => continue,
+        };
+        push(&mut lines, Line { at: snapped((at + delay) / ts), value, slope: 0.0 });
+    }
+    Part::Lines { list: lines, current: 0 }
+}
+
+/// Ramps and pulses added up: changes of level and slope at instants.
+fn added(list: &[(f64, Signal)], delay: f64, ts: f64) -> Part {
     let mut changes: Vec<(f64, f64, f64)> = Vec::new();
-    let mut steady = level;
     for &(at, ref signal) in list {
         match *signal {
-            Signal::Step(value) => {
-                changes.push((at, value - steady, 0.0));
-                steady = value;
-            }
-            Signal::Recorded(_) => {
-                changes.push((at, -steady, 0.0));
-                steady = 0.0;
-            }
             Signal::Ramp { slope, duration } => {
                 changes.push((at, 0.0, slope));
                 if duration.is_finite() {
@@ -287,21 +292,25 @@ fn lines(level: f64, list: &[(f64, Signal)], delay: f64, ts: f64) -> Part {
                 changes.push((at, height, 0.0));
                 changes.push((at + duration, -height, 0.0));
             }
-            Signal::Sine { .. } | Signal::Walk { .. } => {}
+            Signal::Step(_) | Signal::Recorded(_) | Signal::Sine { .. } | Signal::Walk { .. } => {}
         }
     }
     changes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut list = vec![Line { at: f64::NEG_INFINITY, value: level, slope: 0.0 }];
+    let mut lines = vec![Line { at: f64::NEG_INFINITY, value: 0.0, slope: 0.0 }];
     for (at, rise, bend) in changes {
         let at = snapped((at + delay) / ts);
-        let last = list[list.len() - 1];
-        let next = Line { at, value: last.value(at, ts) + rise, slope: last.slope + bend };
-        if last.at == at {
-            list.pop();
-        }
-        list.push(next);
+        let last = lines[lines.len() - 1];
+        push(&mut lines, Line { at, value: last.value(at, ts) + rise, slope: last.slope + bend });
     }
-    Part::Lines { list, current: 0 }
+    Part::Lines { list: lines, current: 0 }
+}
+
+/// Of two lines from the same instant the later one holds.
+fn push(lines: &mut Vec<Line>, line: Line) {
+    if lines.last().is_some_and(|last| last.at == line.at) {
+        lines.pop();
+    }
+    lines.push(line);
 }
 
 #[cfg(test)]
@@ -338,6 +347,17 @@ mod tests {
         ];
         // The ramp leaves 2 behind; the recording takes the level of 1 over.
         assert_eq!(values(&list, 0.5, 10), [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 4.0, 4.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn a_step_has_exactly_the_value_that_is_written() {
+        let steps = [0.1, 1e12, 0.1, 0.0].into_iter().zip(0..).map(|(x, k)| (f64::from(k), Signal::Step(x)));
+        assert_eq!(values(&steps.collect::<Vec<_>>(), 1.0, 4), [0.1, 1e12, 0.1, 0.0]);
+    }
+
+    #[test]
+    fn instants_of_long_runs_keep_their_place() {
+        assert_eq!([snapped(1e8 + 0.05), snapped(1e8 + 1e-8), snapped(0.3 / 0.1)], [1e8 + 0.05, 1e8, 3.0]);
     }
 
     #[test]

@@ -37,12 +37,13 @@ pub(super) fn rounded(x: f64, resolution: f64) -> f64 {
 pub(super) struct Replay {
     recording: Arc<Recording>,
     start: f64,
+    ts: f64,
     row: usize,
 }
 
 impl Replay {
-    pub(super) fn new(recording: &Arc<Recording>, start: f64) -> Self {
-        Self { recording: Arc::clone(recording), start, row: 0 }
+    pub(super) fn new(recording: &Arc<Recording>, start: f64, ts: f64) -> Self {
+        Self { recording: Arc::clone(recording), start, ts, row: 0 }
     }
 
     /// The recorded value at the time `t` \[s\], after the end the last one; `t` never falls.
@@ -50,7 +51,7 @@ impl Replay {
         let Recording { times, values, between, .. } = &*self.recording;
         let t = t - self.start;
         // Sums of periods are not exact: a row at the time of a sample belongs to it.
-        let due = |next: &f64| *next <= t + 1e-9 * (1.0 + t.abs());
+        let due = |next: &f64| *next <= t + 1e-9 * self.ts + 4.0 * f64::EPSILON * (t.abs() + self.start);
         while times.get(self.row + 1).is_some_and(due) {
             self.row += 1;
         }
@@ -84,7 +85,7 @@ mod tests {
             Arc::new(Recording { name: "x".to_owned(), times, values, between })
         };
         let play = |between| {
-            let mut replay = Replay::new(&recording(between), 2.0);
+            let mut replay = Replay::new(&recording(between), 2.0, 0.1);
             [2.0, 2.1, 2.1 + 0.2, 2.65, 9.0].map(|t| replay.value(t))
         };
         assert_eq!(play(Between::Hold), [1.0, 1.0, 2.0, 2.0, 4.0]);

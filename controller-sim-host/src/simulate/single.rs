@@ -19,6 +19,7 @@ const CHECKED_EVERY: u64 = 4096;
 
 /// The loop of one controller, and what the events have made of its inputs.
 struct Loop<T: Real> {
+    ts: f64,
     law: AnyLaw<T>,
     input: ControllerInput<T>,
     output: ControllerOutput<T>,
@@ -84,6 +85,7 @@ impl<T: Real> Loop<T> {
             _ => None,
         });
         Ok(Self {
+            ts,
             law,
             input: ControllerInput { r: r0, r_remote: r0, mode: spec.mode, ..ControllerInput::default() },
             output: ControllerOutput { mode: spec.mode, ..ControllerOutput::default() },
@@ -106,7 +108,7 @@ impl<T: Real> Loop<T> {
         match change {
             Change::Setpoint(_) | Change::RemoteSetpoint(_) | Change::Disturbance(_) => {}
             Change::Measurement(recording) => {
-                self.replay = recording.as_ref().map(|recording| Replay::new(recording, t));
+                self.replay = recording.as_ref().map(|recording| Replay::new(recording, t, self.ts));
             }
             Change::Mode(mode) => input.mode = *mode,
             Change::Manual(u) => input.manual = Some(T::from_f64(*u)),
@@ -193,6 +195,11 @@ impl<T: Real> Loop<T> {
         }
     }
 
+    /// What is to be said of the controller, the secondary one's troubles included: its output acts.
+    fn status(&self) -> Status {
+        self.secondary.as_ref().map_or(self.output.status, |inner| self.output.status | inner.output.status)
+    }
+
     /// The sample as others see it; `d` is the disturbance \[u\].
     fn seen(&self, t: f64, now: &Now, d: f64) -> Sample {
         let acting = self.secondary.as_ref().map_or(&self.output, |inner| &inner.output);
@@ -207,7 +214,7 @@ impl<T: Real> Loop<T> {
             d_hat: acting.d_hat.to_f64(),
             d,
             mode: self.output.mode,
-            status: self.output.status | late,
+            status: self.status() | late,
             inner: now.inner,
         }
     }
@@ -265,7 +272,7 @@ pub(super) fn run_one<T: Real>(
         let e = now.r - now.exact;
         let automatic = control_loop.output.mode.is_automatic();
         stretches.sample(t, ts, e, now.before, control_loop.u);
-        watch.sample(t, k, e, control_loop.output.status, automatic);
+        watch.sample(t, k, e, control_loop.status(), automatic);
         let band = record.as_ref().map_or(0, |record| record.band(k));
         if watched {
             let sample = control_loop.seen(t, &now, disturbance.advance_to(k as f64));

@@ -32,7 +32,7 @@ pub struct Stretch {
 pub fn sample_of(at: f64, ts: f64) -> u64 {
     let s = at / ts;
     let near = s.round();
-    (if (s - near).abs() < 1e-9 * (1.0 + near.abs()) { near } else { s.ceil() }) as u64
+    (if (s - near).abs() < 1e-9 + 4.0 * f64::EPSILON * near.abs() { near } else { s.ceil() }) as u64
 }
 
 /// Collects the indices of each stretch of one controller.
@@ -71,6 +71,10 @@ impl Stretches {
         }
         if list.first().is_none_or(|(start, _)| *start > 0.0) {
             list.insert(0, (0.0, begin(0.0, EventKind::Start)));
+        }
+        // What waits for the next sample may begin after a disturbance that is written later: windows follow the text.
+        for index in (1..list.len()).rev() {
+            list[index - 1].0 = list[index - 1].0.min(list[index].0);
         }
         let next = list.get(1).map_or(f64::INFINITY, |(start, _)| *start);
         Self { list, current: 0, next }

@@ -29,7 +29,7 @@ const INTENDED: [(&str, &str); 19] = [
 
 #[test]
 fn every_scenario_explains_itself_and_runs_in_both_precisions() {
-    // Issue 3 asks for eight teaching scenarios and seven figures.
+    // At least eight teaching scenarios, and seven figures of the papers.
     let figures = demo::all().filter(|one| one.path.starts_with("figures/")).count();
     assert_eq!(figures, 5 + 6, "five of the chapter; two of the paper in one for each of six loops");
     assert!(demo::all().count() >= figures + 8);
