@@ -11,7 +11,7 @@
 //! | [`rungs`] | what each rung of the ladder does |
 //! | [`report`] | the rung that opens the program's pages in a browser |
 //! | [`memory`] | the memory of long runs |
-//! | [`bench`] | the speed of the simulation beside a loop in Python |
+//! | [`mod@bench`] | the speed of the simulation beside a loop in Python |
 //! | [`long_runs`] | scenarios of any length for these |
 //! | [`checks`] | pure checks: dependency allow-list, same bits, file hygiene |
 //! | [`fuzz`] | bounded and long runs of the fuzz targets |
