@@ -1,13 +1,30 @@
-//! Design side of the controller library: plant models on paper, before anything runs.
+//! Design side of the controller library: from a plant model or a recording to parameters, before anything runs.
 //!
 //! All of it computes in `f64`. The run-time blocks live in `controller_core`; this crate only produces what
 //! they are configured with. Transcendental functions come from `libm`, so that a design has the same bits on
 //! every machine.
 //!
+//! Without the feature `std` the crate needs neither an operating system nor a heap; what is left are the closed
+//! forms, so that a target can tune itself:
+//!
+//! * [`areas`]: the characteristic areas of a process, eq. (5) of Vrančić & Huba 2021.
+//! * [`rules`]: tuning rules, each a small type with its source, its validity and its warnings.
+//!
+//! With it (the default):
+//!
 //! * [`model`]: plants written as expressions, such as `1.98*exp(-3.2*s)/(1+80.3*s)`, their polynomials,
 //!   poles, zeros and factors.
 
+#![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod areas;
+#[cfg(feature = "std")]
 pub mod model;
+pub mod refusal;
+pub mod rules;
+pub mod warning;
+
+pub use refusal::Refusal;
+pub use warning::{Warning, Warnings};
