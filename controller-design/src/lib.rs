@@ -14,12 +14,17 @@
 //!
 //! * [`model`]: plants written as expressions, such as `1.98*exp(-3.2*s)/(1+80.3*s)`, their polynomials,
 //!   poles, zeros and factors.
+//! * [`margins`]: sensitivity peaks, gain, phase and delay margins of a design.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod areas;
+#[cfg(feature = "std")]
+mod frequency;
+#[cfg(feature = "std")]
+pub mod margins;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod refusal;
