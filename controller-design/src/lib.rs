@@ -15,6 +15,7 @@
 //! * [`model`]: plants written as expressions, such as `1.98*exp(-3.2*s)/(1+80.3*s)`, their polynomials,
 //!   poles, zeros and factors.
 //! * [`margins`]: sensitivity peaks, gain, phase and delay margins of a design.
+//! * [`hold`]: plants as a sampled controller sees them, exactly.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
@@ -25,6 +26,8 @@ pub mod areas;
 mod frequency;
 #[cfg(feature = "std")]
 pub mod margins;
+#[cfg(feature = "std")]
+pub mod hold;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod refusal;
