@@ -75,7 +75,7 @@ pub use lag::{Lag, LagTap};
 pub use limit::{Limit, LimitConfig, Limited};
 pub use mode::Mode;
 pub use param_cell::ParamCell;
-pub use pid::{Action, IntegralRule, Pid, PidConfig, PidInput, PidOutput, PidState, Span};
+pub use pid::{Action, IntegralRule, Pid, PidCoefficients, PidConfig, PidInput, PidOutput, PidState, Span};
 pub use plant_model::PlantModel;
 pub use real::Real;
 pub use sample::{

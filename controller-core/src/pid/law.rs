@@ -36,6 +36,26 @@ pub struct Pid<T> {
     h_y: T,
 }
 
+/// The coefficients of a [`Pid`] as numbers: what an export writes and what an analysis of the deployed law reads. The
+/// difference equation is that of [`Pid`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PidCoefficients<T> {
+    /// Weight of `e[k]` in the integral's increment [u/y]: `ki*ts` or half of it.
+    pub ki_now: T,
+    /// Weight of `e[k-1]` in the integral's increment [u/y]: 0 or half of `ki*ts`.
+    pub ki_before: T,
+    /// Gain `g` of the lags, above 0 and at most 1.
+    pub g: T,
+    /// `P_b`, the weight of the set-point's lag [u/y].
+    pub p_r: T,
+    /// `H_r`, the weight of the set-point's difference from its lag [u/y].
+    pub h_r: T,
+    /// `P_1`, the weight of the measurement's lag [u/y].
+    pub p_y: T,
+    /// `H_y`, the weight of the measurement's difference from its lag [u/y].
+    pub h_y: T,
+}
+
 /// State of a [`Pid`]: the integral term in the output's unit, everything else plain signals, so that it stays
 /// valid when the law is replaced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -170,6 +190,20 @@ impl<T: Real> Pid<T> {
     pub fn adopt(&self, old: &Self, state: &mut PidState<T>) {
         let last = PidInput { r: state.r, y: state.y };
         state.shift_integral(old.preview(state, last) - self.preview(state, last));
+    }
+
+    /// The coefficients that the step uses.
+    ///
+    /// ```
+    /// use controller_core::{Pid, PidConfig};
+    /// let pid = Pid::<f64>::new(&PidConfig { kp: 2.0, ki: 0.5, ..PidConfig::default() }, 0.5).unwrap();
+    /// let c = pid.coefficients();
+    /// assert_eq!((c.ki_now, c.ki_before, c.g, c.p_y, c.h_y), (0.25, 0.0, 1.0, 2.0, 2.0));
+    /// ```
+    #[must_use]
+    pub const fn coefficients(&self) -> PidCoefficients<T> {
+        let Self { ki_now, ki_before, g, p_r, h_r, p_y, h_y } = *self;
+        PidCoefficients { ki_now, ki_before, g, p_r, h_r, p_y, h_y }
     }
 
     /// Gain from a step of `y` to the output in the same sample [u/y]: `H_y`, without the integral's `ki*ts`.

@@ -16,4 +16,4 @@ mod law;
 
 pub use config::{Action, IntegralRule, PidConfig};
 pub use conventions::Span;
-pub use law::{Pid, PidInput, PidOutput, PidState};
+pub use law::{Pid, PidCoefficients, PidInput, PidOutput, PidState};
