@@ -127,10 +127,29 @@ pub fn named(name: &str) -> Result<Vec<BuiltIn>, Option<&'static str>> {
         Some(exact) => Ok(vec![*exact]),
         None if group.is_empty() => {
             let names: Vec<&'static str> = all().map(|one| one.name()).collect();
-            Err(closest(wanted, &names))
+            let mut known = groups(&names);
+            known.splice(0..0, names);
+            Err(closest(wanted, &known))
         }
         None => Ok(group),
     }
+}
+
+/// The beginnings that several of `names` share, each once.
+fn groups(names: &[&'static str]) -> Vec<&'static str> {
+    let mut groups: Vec<&'static str> = Vec::new();
+    for name in names {
+        let beginnings = name.match_indices('-').filter_map(|(at, _)| name.get(..at));
+        for group in beginnings.filter(|group| !groups.contains(group)).collect::<Vec<_>>() {
+            let members = names
+                .iter()
+                .filter(|other| other.strip_prefix(group).is_some_and(|rest| rest.starts_with('-')));
+            if members.count() > 1 {
+                groups.push(group);
+            }
+        }
+    }
+    groups
 }
 
 /// `4` is `04`: figures have numbers.
@@ -219,5 +238,6 @@ mod tests {
         let group = names("figures/dob-fig-4").expect("several");
         assert!(group.len() > 1 && group.iter().all(|name| name.starts_with("dob-fig-04-")), "{group:?}");
         assert_eq!((names(""), names("wind")), (Err(None), Err(Some("windup"))));
+        assert_eq!((names("chaptr"), names("dob-figg")), (Err(Some("chapter")), Err(Some("dob-fig"))));
     }
 }

@@ -30,6 +30,13 @@ impl Targets {
             .chain(one("--parquet", &options.parquet))
             .collect();
         let (mut targets, mut problems) = (Self::default(), Vec::new());
+        // Numbered, its name would be that of a file beside the folder.
+        if let Some(path) = options.svg.as_ref().filter(|path| runs > 1 && path.is_dir()) {
+            let problem = Problem::new("file", format!("`{}` is a directory", path.display()));
+            let example = path.join("plot.svg");
+            let help = format!("give the name of a file: `--svg {}`", example.display());
+            return Err(vec![problem.help(help)]);
+        }
         for (i, (option, path)) in wanted.iter().enumerate() {
             let checked = check(option, path, wanted.get(..i).unwrap_or_default(), inputs);
             match checked.and_then(|()| FileTarget::new(path, options.force)) {

@@ -61,6 +61,18 @@ fn several_files_are_chapters_in_order() {
 }
 
 #[test]
+fn a_folder_is_no_name_for_pictures() {
+    let folder = Folder::new("several-svg-folder");
+    folder.write("a.toml", BASE);
+    std::fs::create_dir_all(folder.0.join("pictures")).expect("a folder");
+    for name in ["pictures", "pictures/"] {
+        let shown = folder.refused(&["run", "a.toml", "a.toml", "--svg", name]);
+        assert!(shown.contains("is a directory") && shown.contains("plot.svg"), "{shown}");
+        assert_eq!(folder.names(), ["a.toml", "pictures"]);
+    }
+}
+
+#[test]
 fn values_are_set_on_the_command_line() {
     let folder = Folder::new("set");
     folder.write("s.toml", BASE);
