@@ -25,9 +25,9 @@ pub mod areas;
 #[cfg(feature = "std")]
 mod frequency;
 #[cfg(feature = "std")]
-pub mod margins;
-#[cfg(feature = "std")]
 pub mod hold;
+#[cfg(feature = "std")]
+pub mod margins;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod refusal;

@@ -103,6 +103,23 @@ impl TransferFunction {
         Self::over(gain, [0.0, 1.0], dead_time)
     }
 
+    /// The same function with another dead time \[s\].
+    ///
+    /// # Errors
+    /// A dead time that is negative or not finite.
+    ///
+    /// ```
+    /// use controller_design::model::parse;
+    /// let plant = parse("exp(-s)/(1+s)^4").expect("a valid plant");
+    /// assert_eq!(plant.with_dead_time(0.5).expect("a valid plant").to_string(), "exp(-0.5*s)/(1+s)^4");
+    /// assert!(plant.with_dead_time(-0.5).is_err());
+    /// ```
+    pub fn with_dead_time(&self, dead_time: f64) -> Result<Self, ModelError> {
+        let mut value = self.value.clone();
+        value.dead_time = finite("the dead time", dead_time)?;
+        Self::from_factored(value)
+    }
+
     fn over<const N: usize>(gain: f64, den: [f64; N], dead_time: f64) -> Result<Self, ModelError> {
         let num = Polynomial::constant(finite("the gain", gain)?);
         Self::from_polynomials(&num, &Polynomial::new(den), dead_time)

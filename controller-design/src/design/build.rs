@@ -1,0 +1,278 @@
+//! From a request to a design, rule by rule.
+
+use super::robust::{within, widened};
+use super::{Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Predicted, Request};
+use crate::areas::Areas;
+use crate::margins::ContinuousLoop;
+use crate::model::{Fopdt, HalfRule, Keep, Sopdt, TransferFunction, half_rule};
+use crate::rules::noise_limit::{self, PidRule, least_kpidn};
+use crate::rules::{de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::ObserverDesign, pi_iae::PiIae, pi_ms::PiMs};
+use crate::{Refusal, Warning, Warnings};
+use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
+
+/// Default maximum sensitivity of rules that are given one.
+const DEFAULT_MS: f64 = 1.4;
+/// Default noise gain in units of `1/|K|`.
+const DEFAULT_NOISE_GAIN: f64 = 4.0;
+/// How far above the least attainable noise gain the default stays.
+const ABOVE_LEAST: f64 = 1.05;
+/// Default limit of the noise ratio of an observer.
+const DEFAULT_NOISE_RATIO: f64 = 4.0;
+/// Default limit of the maximum sensitivity with an observer whose noise ratio is chosen.
+const DEFAULT_MS_MAX: f64 = 2.0;
+
+/// Designs a controller for `plant`.
+///
+/// The rules see the plant with the latency of the request as additional dead time; the models of compensators do not
+/// contain it: the blocks add it themselves.
+///
+/// # Errors
+/// What the rule refuses; a parameter of the request out of its range; a loop that is not stable.
+pub fn design(plant: &TransferFunction, request: &Request) -> Result<Design, Refusal> {
+    design_with_areas(plant, None, request)
+}
+
+/// [`design`] with areas that were measured: rules that use areas take these instead of those of `plant`, which stays
+/// the model for everything else.
+///
+/// # Errors
+/// As for [`design`].
+pub fn design_with_areas(
+    plant: &TransferFunction,
+    measured: Option<&Areas>,
+    request: &Request,
+) -> Result<Design, Refusal> {
+    check("ts", request.ts, f64::MIN_POSITIVE, 1e9)?;
+    check("latency", request.latency, 0.0, 1e12)?;
+    let delayed = late(plant, request.latency)?;
+    let mut job = Job { plant, delayed, measured, request, made: Made::default() };
+    let law = job.law()?;
+    let Job { delayed, made, .. } = job;
+    finish(plant, &delayed, request, law, made)
+}
+
+/// What a rule leaves behind besides the law.
+#[derive(Default)]
+struct Made {
+    areas: Option<Areas>,
+    model: Option<TransferFunction>,
+    noise: Noise,
+    iae_load: Option<f64>,
+    warnings: Warnings,
+}
+
+struct Job<'a> {
+    plant: &'a TransferFunction,
+    /// The plant behind the latency.
+    delayed: TransferFunction,
+    measured: Option<&'a Areas>,
+    request: &'a Request,
+    made: Made,
+}
+
+impl Job<'_> {
+    fn law(&mut self) -> Result<Law, Refusal> {
+        match self.request.method {
+            Method::Momi => self.by_areas(PidRule::Momi),
+            Method::Drmo => self.by_areas(PidRule::Drmo),
+            Method::DeMomi => self.with_estimator(),
+            Method::PiMs => self.within_ms().map(plain),
+            Method::Dob => self.with_observer(),
+            Method::PiIae => self.least_iae(),
+            Method::Ah => self.kappa_tau(),
+            Method::Adrc => self.adrc(),
+            Method::Amigo => self.amigo(),
+            Method::Simc => self.simc(),
+        }
+    }
+
+    /// The areas that the rules use.
+    fn areas(&mut self) -> Result<Areas, Refusal> {
+        let areas = match self.measured {
+            // A delay in front of the process is one in front of its response.
+            Some(areas) => areas.delayed(self.request.latency),
+            None => self.delayed.areas6()?,
+        };
+        self.made.areas = Some(areas);
+        Ok(areas)
+    }
+
+    /// The noise gain that the PID's filter is chosen for; `None`: the filter is given.
+    fn noise_gain(&mut self, areas: &Areas, rule: PidRule) -> Option<f64> {
+        match self.request.filter {
+            Filter::Time(_) => None,
+            Filter::NoiseGain(gain) => Some(gain),
+            Filter::Default => {
+                let usual = DEFAULT_NOISE_GAIN / areas.of(0).abs();
+                let least = ABOVE_LEAST * least_kpidn(areas, rule, self.request.ts);
+                if least > usual && least.is_finite() {
+                    let text = "raised to what is attainable; the usual limit is 4/|K|";
+                    self.warn(Warning::Value { about: "kpidn", value: least, text });
+                    return Some(least);
+                }
+                Some(usual)
+            }
+        }
+    }
+
+    fn filter_time(&self) -> f64 {
+        if let Filter::Time(tf) = self.request.filter { tf } else { 0.0 }
+    }
+
+    fn by_areas(&mut self, rule: PidRule) -> Result<Law, Refusal> {
+        let areas = self.areas()?;
+        let gain = self.noise_gain(&areas, rule);
+        let (tf, ts) = (self.filter_time(), self.request.ts);
+        let (pid, warnings) = match (rule, gain) {
+            (PidRule::Momi, None) => Momi::new(&areas, tf).map(|m| (m.pid, m.warnings)),
+            (PidRule::Momi, Some(k)) => Momi::with_noise_limit(&areas, k, ts).map(|m| (m.pid, m.warnings)),
+            (PidRule::Drmo, None) => Drmo::new(&areas, tf).map(|d| (d.pid, d.warnings)),
+            (PidRule::Drmo, Some(k)) => Drmo::with_noise_limit(&areas, k, ts).map(|d| (d.pid, d.warnings)),
+        }?;
+        warnings.into_iter().for_each(|warning| self.warn(warning));
+        Ok(plain(pid))
+    }
+
+    fn with_estimator(&mut self) -> Result<Law, Refusal> {
+        let areas = self.areas()?;
+        let ts = self.request.ts;
+        let gain = self.noise_gain(&areas, PidRule::Momi);
+        let tf = match gain {
+            None => self.filter_time(),
+            Some(gain) => Momi::with_noise_limit(&areas, gain, ts)?.pid.tf,
+        };
+        let made = match (self.request.estimator_filter, gain) {
+            (EstimatorFilter::Time(tfd), _) => DeMomi::new(&areas, tf, tfd),
+            (EstimatorFilter::NoiseGain(kden), Some(gain)) => DeMomi::with_noise_limits(&areas, gain, kden, ts),
+            (EstimatorFilter::NoiseGain(kden), None) => DeMomi::with_estimator_limit(&areas, tf, kden, ts),
+            (EstimatorFilter::Default, Some(gain)) => DeMomi::with_noise_limits(&areas, gain, gain, ts),
+            (EstimatorFilter::Default, None) => {
+                let kden = DEFAULT_NOISE_GAIN / areas.of(0).abs();
+                DeMomi::with_estimator_limit(&areas, tf, kden, ts)
+            }
+        }?;
+        made.warnings.iter().for_each(|warning| self.warn(*warning));
+        let model = &made.model;
+        let sopdt = Sopdt { gain: model.gain, a1: model.a1, a2: model.a2, dead_time: model.dead_time };
+        self.made.model = sopdt.transfer_function().ok();
+        let Some(mut estimator) = made.estimator else { return Ok(plain(made.pid)) };
+        if let Some(most) = self.request.ms_max {
+            within(&self.delayed, &made.pid, &mut estimator, &sopdt, most, &mut self.made.warnings)?;
+        }
+        self.made.noise.kden = Some(noise_limit::kden(model, estimator.kfd, estimator.tfd, ts));
+        // The block adds the latency itself.
+        if estimator.dead_time >= self.request.latency {
+            estimator.dead_time -= self.request.latency;
+        } else {
+            let text = "longer than the dead time of the model, which it is part of";
+            self.warn(Warning::Value { about: "latency", value: self.request.latency, text });
+            estimator.dead_time = 0.0;
+        }
+        Ok(Law::Pid { pid: made.pid, estimator: Some(estimator), observer: None })
+    }
+
+    fn within_ms(&mut self) -> Result<PidConfig, Refusal> {
+        let made = PiMs::new(&self.delayed, self.request.ms.unwrap_or(DEFAULT_MS))?;
+        made.warnings.iter().for_each(|warning| self.warn(*warning));
+        Ok(made.pid)
+    }
+
+    fn with_observer(&mut self) -> Result<Law, Refusal> {
+        let pid = self.within_ms()?;
+        let most = self.request.ms_max;
+        let made = match (self.request.observer_filter, most) {
+            (ObserverFilter::Time(alpha), _) => ObserverDesign::with_alpha(&self.delayed, &pid, alpha),
+            (ObserverFilter::NoiseRatio(ratio), None) => {
+                ObserverDesign::with_noise_ratio(&self.delayed, &pid, ratio)
+            }
+            (ObserverFilter::NoiseRatio(ratio), Some(most)) => {
+                ObserverDesign::within_ms(&self.delayed, &pid, ratio, most)
+            }
+            (ObserverFilter::Default, most) => {
+                let most = most.unwrap_or(DEFAULT_MS_MAX);
+                ObserverDesign::within_ms(&self.delayed, &pid, DEFAULT_NOISE_RATIO, most)
+            }
+        }?;
+        made.warnings.iter().for_each(|warning| self.warn(*warning));
+        self.made.noise.an = Some(made.an);
+        let mut observer: ObserverConfig = made.observer;
+        // The block adds the latency itself.
+        observer.model.dead_time = self.plant.dead_time();
+        Ok(Law::Pid { pid, estimator: None, observer: Some(observer) })
+    }
+
+    fn least_iae(&mut self) -> Result<Law, Refusal> {
+        let made = PiIae::new(&self.delayed)?;
+        made.warnings.iter().for_each(|warning| self.warn(*warning));
+        self.made.iae_load = Some(made.iae);
+        Ok(plain(made.pid))
+    }
+
+    fn warn(&mut self, warning: Warning) {
+        warn(&mut self.made.warnings, warning);
+    }
+}
+
+/// A PID alone.
+fn plain(pid: PidConfig) -> Law {
+    Law::Pid { pid, estimator: None, observer: None }
+}
+
+/// The plant behind a latency.
+fn late(plant: &TransferFunction, latency: f64) -> Result<TransferFunction, Refusal> {
+    if latency == 0.0 {
+        return Ok(plant.clone());
+    }
+    plant.with_dead_time(plant.dead_time() + latency).map_err(|_| Refusal::OutOfRange {
+        parameter: "latency",
+        value: latency,
+        min: 0.0,
+        max: 1e12,
+    })
+}
+
+fn check(parameter: &'static str, value: f64, min: f64, max: f64) -> Result<(), Refusal> {
+    if (min..=max).contains(&value) { Ok(()) } else { Err(Refusal::OutOfRange { parameter, value, min, max }) }
+}
+
+/// What can be said of the loop as a whole.
+fn finish(
+    plant: &TransferFunction,
+    delayed: &TransferFunction,
+    request: &Request,
+    law: Law,
+    made: Made,
+) -> Result<Design, Refusal> {
+    let Made { areas, model, mut noise, iae_load, mut warnings } = made;
+    let robustness = continuous(plant, &law, request.latency)?.margins()?;
+    let mut predicted = Predicted { iae_load, ..Predicted::default() };
+    let mut filtered_areas = None;
+    if let Law::Pid { pid, estimator, observer } = &law {
+        noise.kpidn = Some(noise_limit::kpidn(pid, request.ts));
+        filtered_areas = areas.map(|areas| areas.filtered(pid.tf));
+        if pid.ki != 0.0 && delayed.differentiators() == 0 {
+            let rest = estimator.as_ref().map_or(1.0, |estimator| 1.0 - estimator.kfd);
+            predicted.ie_load = Some(if observer.is_some() { 0.0 } else { -rest / pid.ki });
+            let static_error = if delayed.integrators() > 0 { 0.0 } else { 1.0 / delayed.gain() };
+            predicted.ie_setpoint = Some((static_error + (1.0 - pid.b) * pid.kp) / pid.ki);
+        }
+    }
+    if let Some(samples) = few_samples(&robustness, request.ts) {
+        let text = "the delay margin in samples: below 10 the sampling itself costs robustness; choose a shorter ts";
+        warn(&mut warnings, Warning::Value { about: "ts", value: samples, text });
+    }
+    Ok(Design {
+        method: request.method,
+        ts: request.ts,
+        latency: request.latency,
+        plant: plant.clone(),
+        law,
+        areas,
+        filtered_areas,
+        model,
+        robustness,
+        noise,
+        predicted,
+        warnings,
+    })
+}

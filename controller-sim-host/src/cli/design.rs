@@ -1,0 +1,57 @@
+//! `design`: from a plant to a controller.
+
+use super::arguments::DesignArguments;
+use super::wish::usual_period;
+use super::{Failure, print};
+use crate::advise::advise;
+use crate::design_file;
+use crate::output::{self, FileTarget, Problem, Trouble};
+use crate::scenario::{Fault, SourceText, code};
+use controller_design::Refusal;
+use controller_design::design::{Method, design};
+use controller_design::model::{TransferFunction, parse};
+use std::io::Write;
+
+/// `design`: `command` is what was typed.
+pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Result<(), Failure> {
+    let plant = plant(&arguments.plant)?;
+    let ts = arguments.ts.unwrap_or_else(|| usual_period(&plant));
+    let Some(method) = arguments.method.one() else {
+        let advice = advise(&plant, ts, |method| arguments.wish.request(method, ts, None));
+        return Ok(print(&if json { output::advice_json(&advice) } else { output::advice_table(&advice) })?);
+    };
+    let idle = arguments.wish.idle(method);
+    if !idle.is_empty() {
+        return Err(Failure::input(idle.into_iter().map(Trouble::from).collect()));
+    }
+    let target = arguments.save.as_ref().map(|path| FileTarget::new(path, arguments.force)).transpose()?;
+    let made = design(&plant, &arguments.wish.request(method, ts, None)).map_err(|r| refused(method, &r))?;
+    if let Some(target) = &target {
+        let file = design_file::of(&made, arguments.wish.limits, command);
+        target.write(|to| to.write_all(file.text().as_bytes())).map_err(Failure::internal)?;
+    }
+    let saved = target.map(|target| target.path().display().to_string());
+    Ok(print(&if json {
+        output::design_json(&made, saved.as_deref())
+    } else {
+        output::design_table(&made, saved.as_deref())
+    })?)
+}
+
+/// The plant of the command line.
+pub(super) fn plant(text: &str) -> Result<TransferFunction, Failure> {
+    parse(text).map_err(|errors| {
+        let faults = errors.into_iter().map(|error| {
+            let fault = Fault::new(code::EXPRESSION, error.span, error.message);
+            Fault { help: error.help, ..fault }
+        });
+        let source = SourceText { name: "--plant".to_owned(), text: text.to_owned() };
+        Failure::input(vec![Trouble::Scenario(source, faults.collect())])
+    })
+}
+
+/// What a rule refuses: well-formed input without a result.
+pub(super) fn refused(method: Method, refusal: &Refusal) -> Failure {
+    let message = format!("no design by {}: {refusal}", method.name());
+    Failure::refused(Problem::new("refused", message).help(refusal.help()))
+}

@@ -1,0 +1,147 @@
+//! The options that say which controller is wanted, common to `design` and `tune`.
+
+use crate::output::Problem;
+use clap::Args;
+use controller_design::design::{EstimatorFilter, Filter, Method, ObserverFilter, Request};
+use controller_design::model::TransferFunction;
+
+/// What is asked of a design.
+#[derive(Debug, Default, Args)]
+pub(super) struct Wish {
+    /// Time constant of the PID's filter \[s\]
+    #[arg(long, value_name = "S", value_parser = time, conflicts_with = "kpidn")]
+    tf: Option<f64>,
+    /// Noise gain of the PID at a quarter of the sampling frequency [u/y]; default 4/|K|, or what is attainable
+    #[arg(long, value_name = "G", value_parser = positive)]
+    kpidn: Option<f64>,
+    /// Time constant of the disturbance estimator's filter \[s\] (de-momi)
+    #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "kden")]
+    tfd: Option<f64>,
+    /// Noise gain of the disturbance estimator [u/y] (de-momi); default: that of the PID
+    #[arg(long, value_name = "G", value_parser = positive)]
+    kden: Option<f64>,
+    /// Maximum sensitivity to design for (pi-ms, dob: default 1.4; ah: 1.4 or 2)
+    #[arg(long, value_name = "M", value_parser = sensitivity)]
+    ms: Option<f64>,
+    /// Largest maximum sensitivity with a disturbance block: slows its filter, then cuts its gain (de-momi, dob)
+    #[arg(long, value_name = "M", value_parser = sensitivity)]
+    ms_max: Option<f64>,
+    /// Noise gain with the observer over that of the PI alone, above 1 (dob)
+    #[arg(long, value_name = "B", value_parser = positive, conflicts_with = "alpha")]
+    noise_ratio: Option<f64>,
+    /// Time constant of the observer's filter \[s\] (dob)
+    #[arg(long, value_name = "S", value_parser = positive)]
+    alpha: Option<f64>,
+    /// From reading the measurement to acting with the output \[s\]
+    #[arg(long, value_name = "S", value_parser = time, default_value_t = 0.0)]
+    pub(super) latency: f64,
+    /// Range of the output, for the design file
+    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
+    pub(super) limits: Option<(f64, f64)>,
+}
+
+impl Wish {
+    /// The request for `method`; `ms_max` when it is not given.
+    pub(super) fn request(&self, method: Method, ts: f64, ms_max: Option<f64>) -> Request {
+        let mut request = Request { latency: self.latency, ..Request::new(method, ts) };
+        let filter = self.tf.map(Filter::Time).or(self.kpidn.map(Filter::NoiseGain));
+        request.filter = filter.unwrap_or(request.filter);
+        let filter = self.tfd.map(EstimatorFilter::Time).or(self.kden.map(EstimatorFilter::NoiseGain));
+        request.estimator_filter = filter.unwrap_or(request.estimator_filter);
+        let filter = self.alpha.map(ObserverFilter::Time).or(self.noise_ratio.map(ObserverFilter::NoiseRatio));
+        request.observer_filter = filter.unwrap_or(request.observer_filter);
+        request.ms = self.ms;
+        request.ms_max = self.ms_max.or(ms_max);
+        request
+    }
+
+    /// Options that mean nothing to `method`.
+    pub(super) fn idle(&self, method: Method) -> Vec<Problem> {
+        use Method::{Ah, DeMomi, Dob, Drmo, Momi, PiMs};
+        let given = [
+            ("--tf", self.tf.is_some(), &[Momi, Drmo, DeMomi, Ah][..]),
+            ("--kpidn", self.kpidn.is_some(), &[Momi, Drmo, DeMomi]),
+            ("--tfd", self.tfd.is_some(), &[DeMomi]),
+            ("--kden", self.kden.is_some(), &[DeMomi]),
+            ("--ms", self.ms.is_some(), &[PiMs, Dob, Ah]),
+            ("--ms-max", self.ms_max.is_some(), &[DeMomi, Dob]),
+            ("--noise-ratio", self.noise_ratio.is_some(), &[Dob]),
+            ("--alpha", self.alpha.is_some(), &[Dob]),
+        ];
+        let idle = given.into_iter().filter(|(_, is_given, of)| *is_given && !of.contains(&method));
+        idle.map(|(option, _, of)| {
+            let of: Vec<&str> = of.iter().map(|method| method.name()).collect();
+            Problem::new("usage", format!("`{option}` means nothing to the method {}", method.name()))
+                .help(format!("it belongs to {}", of.join(", ")))
+        })
+        .collect()
+    }
+}
+
+/// A sampling period for a plant whose user has none yet: about a two-hundredth of what the plant needs to respond, of
+/// the series 1, 2, 5.
+pub(super) fn usual_period(plant: &TransferFunction) -> f64 {
+    let span = |roots: Vec<controller_design::model::Complex>| -> f64 {
+        let rates = roots.iter().map(|root| root.abs()).filter(|rate| *rate > 0.0);
+        rates.map(f64::recip).sum()
+    };
+    let whole = plant.dead_time() + span(plant.poles());
+    let wanted = if whole > 0.0 && whole.is_finite() { whole / 200.0 } else { 0.01 };
+    let decade = libm::pow(10.0, libm::floor(libm::log10(wanted)));
+    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * decade <= wanted).unwrap_or(1.0);
+    // By way of text: the nearest number to the decimal one.
+    format!("{:.0e}", step * decade).parse().unwrap_or(wanted)
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        _ => Err("write a number, for example `2.5`".to_owned()),
+    }
+}
+
+fn bounded(text: &str, is_allowed: impl Fn(f64) -> bool, allowed: &str) -> Result<f64, String> {
+    let x = number(text)?;
+    if is_allowed(x) { Ok(x) } else { Err(format!("allowed: {allowed}")) }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    bounded(text, |x| (0.0..=1e12).contains(&x), "0 to 1e12 s")
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    bounded(text, |x| x > 0.0 && x <= 1e15, "above 0, at most 1e15")
+}
+
+fn sensitivity(text: &str) -> Result<f64, String> {
+    bounded(text, |x| (1.001..=100.0).contains(&x), "1.001 to 100")
+}
+
+fn range(text: &str) -> Result<(f64, f64), String> {
+    let parts = text.split_once(':').map(|(lo, hi)| (number(lo), number(hi)));
+    match parts {
+        Some((Ok(lo), Ok(hi))) if lo < hi => Ok((lo, hi)),
+        _ => Err("write the lower and the upper limit, for example `0:100`".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_design::model::parse;
+
+    #[test]
+    fn the_usual_period_is_round_and_scales_with_the_plant() {
+        let of = |plant: &str| usual_period(&parse(plant).expect("a valid plant"));
+        let periods = ["exp(-0.2*s)/((1+0.2*s)*(1+s))", "1/(1+2e-6*s)", "1e-3/(1+1e6*s)", "exp(-s)/s", "1/(1+0.2*s+s^2)"];
+        assert_eq!(periods.map(of), [0.005, 1e-8, 5000.0, 0.005, 0.01]);
+    }
+
+    #[test]
+    fn limits_are_in_order() {
+        assert_eq!(range("-1:2.5"), Ok((-1.0, 2.5)));
+        for wrong in ["1", "2:1", "1:1", "a:b", "1:inf"] {
+            assert!(range(wrong).is_err(), "{wrong}");
+        }
+    }
+}
