@@ -22,6 +22,7 @@
 #![warn(missing_docs)]
 
 pub mod areas;
+mod double;
 #[cfg(feature = "std")]
 mod frequency;
 #[cfg(feature = "std")]
