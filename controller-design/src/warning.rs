@@ -60,3 +60,8 @@ impl fmt::Display for Warning {
         }
     }
 }
+
+/// Adds a warning; beyond [`MAX_WARNINGS`] it is dropped.
+pub(crate) fn warn(warnings: &mut Warnings, warning: Warning) {
+    let _ = warnings.push(warning);
+}
