@@ -14,6 +14,7 @@
 //!
 //! * [`model`]: plants written as expressions, such as `1.98*exp(-3.2*s)/(1+80.3*s)`, their polynomials,
 //!   poles, zeros and factors.
+//! * [`batch134`]: the test processes of Tena et al. 2022.
 //! * [`margins`]: sensitivity peaks, gain, phase and delay margins of a design.
 //! * [`hold`]: plants as a sampled controller sees them, exactly.
 
@@ -23,6 +24,8 @@
 
 pub mod areas;
 mod double;
+#[cfg(feature = "std")]
+pub mod batch134;
 #[cfg(feature = "std")]
 mod frequency;
 #[cfg(feature = "std")]

@@ -13,3 +13,9 @@ mod magnitude_optimum;
 pub mod momi;
 pub mod noise_limit;
 pub mod reduction;
+
+#[cfg(feature = "std")]
+mod pi_ms;
+
+#[cfg(feature = "std")]
+pub use pi_ms::PiMs;
