@@ -16,6 +16,7 @@
 //!   poles, zeros and factors.
 //! * [`batch134`]: the test processes of Tena et al. 2022.
 //! * [`margins`]: sensitivity peaks, gain, phase and delay margins of a design.
+//! * [`design`]: one door to all tuning rules, with the margins and noise gains of what they give.
 //! * [`hold`]: plants as a sampled controller sees them, exactly.
 
 #![cfg_attr(not(feature = "std"), no_std)]
@@ -23,9 +24,11 @@
 #![warn(missing_docs)]
 
 pub mod areas;
-mod double;
 #[cfg(feature = "std")]
 pub mod batch134;
+#[cfg(feature = "std")]
+pub mod design;
+mod double;
 #[cfg(feature = "std")]
 mod frequency;
 #[cfg(feature = "std")]

@@ -80,6 +80,28 @@ impl Areas {
         result
     }
 
+    /// The areas of the process behind an additional dead time \[s\]: the series of `exp(-s*dead_time)` times that of
+    /// the process, `A'_k = sum(dead_time^i/i! * A_(k-i))`. Meant for measured areas: in `f64`.
+    ///
+    /// ```
+    /// use controller_design::areas::Areas;
+    /// let lag = Areas::new([2.0, 6.0, 18.0, 54.0, 162.0, 486.0]);
+    /// assert_eq!(lag.delayed(1.0).of(1), 8.0);
+    /// assert_eq!(lag.delayed(1.0).of(2), 25.0);
+    /// ```
+    #[must_use]
+    pub fn delayed(&self, dead_time: f64) -> Self {
+        let mut values = [0.0; 6];
+        for (k, value) in values.iter_mut().enumerate() {
+            let mut weight = 1.0;
+            for i in 0..=k {
+                *value += weight * self.of(k - i);
+                weight *= dead_time / (i + 1) as f64;
+            }
+        }
+        Self::new(values)
+    }
+
     /// The areas of `gain * num(s)/den(s) * exp(-s*dead_time)` (Vrančić & Huba 2021, eq. (5)); coefficients in
     /// ascending powers of `s`, the first of each 1; `dead_time` in seconds.
     ///

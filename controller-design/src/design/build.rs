@@ -1,12 +1,14 @@
 //! From a request to a design, rule by rule.
 
-use super::robust::{within, widened};
+use super::robust::within;
 use super::{Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Predicted, Request};
 use crate::areas::Areas;
 use crate::margins::ContinuousLoop;
-use crate::model::{Fopdt, HalfRule, Keep, Sopdt, TransferFunction, half_rule};
+use crate::margins::Margins;
+use crate::model::{Sopdt, TransferFunction};
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
-use crate::rules::{de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::ObserverDesign, pi_iae::PiIae, pi_ms::PiMs};
+use crate::rules::{de_momi::DeMomi, drmo::Drmo, momi::Momi, pi_ms::PiMs};
+use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
 use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
 
@@ -20,6 +22,9 @@ const ABOVE_LEAST: f64 = 1.05;
 const DEFAULT_NOISE_RATIO: f64 = 4.0;
 /// Default limit of the maximum sensitivity with an observer whose noise ratio is chosen.
 const DEFAULT_MS_MAX: f64 = 2.0;
+
+/// Delay margin in samples below which the sampling period is too long.
+const FEW_SAMPLES: f64 = 10.0;
 
 /// Designs a controller for `plant`.
 ///
@@ -77,12 +82,10 @@ impl Job<'_> {
             Method::Drmo => self.by_areas(PidRule::Drmo),
             Method::DeMomi => self.with_estimator(),
             Method::PiMs => self.within_ms().map(plain),
-            Method::Dob => self.with_observer(),
-            Method::PiIae => self.least_iae(),
-            Method::Ah => self.kappa_tau(),
-            Method::Adrc => self.adrc(),
-            Method::Amigo => self.amigo(),
-            Method::Simc => self.simc(),
+            _ => Err(Refusal::NoSolution {
+                why: "the rule is not part of this version",
+                help: "use another one",
+            }),
         }
     }
 
@@ -143,7 +146,9 @@ impl Job<'_> {
         };
         let made = match (self.request.estimator_filter, gain) {
             (EstimatorFilter::Time(tfd), _) => DeMomi::new(&areas, tf, tfd),
-            (EstimatorFilter::NoiseGain(kden), Some(gain)) => DeMomi::with_noise_limits(&areas, gain, kden, ts),
+            (EstimatorFilter::NoiseGain(kden), Some(gain)) => {
+                DeMomi::with_noise_limits(&areas, gain, kden, ts)
+            }
             (EstimatorFilter::NoiseGain(kden), None) => DeMomi::with_estimator_limit(&areas, tf, kden, ts),
             (EstimatorFilter::Default, Some(gain)) => DeMomi::with_noise_limits(&areas, gain, gain, ts),
             (EstimatorFilter::Default, None) => {
@@ -157,7 +162,15 @@ impl Job<'_> {
         self.made.model = sopdt.transfer_function().ok();
         let Some(mut estimator) = made.estimator else { return Ok(plain(made.pid)) };
         if let Some(most) = self.request.ms_max {
-            within(&self.delayed, &made.pid, &mut estimator, &sopdt, most, &mut self.made.warnings)?;
+            let latency = 0.5 * ts;
+            within(
+                &self.delayed,
+                &made.pid,
+                &mut estimator,
+                model,
+                (most, latency),
+                &mut self.made.warnings,
+            )?;
         }
         self.made.noise.kden = Some(noise_limit::kden(model, estimator.kfd, estimator.tfd, ts));
         // The block adds the latency itself.
@@ -175,37 +188,6 @@ impl Job<'_> {
         let made = PiMs::new(&self.delayed, self.request.ms.unwrap_or(DEFAULT_MS))?;
         made.warnings.iter().for_each(|warning| self.warn(*warning));
         Ok(made.pid)
-    }
-
-    fn with_observer(&mut self) -> Result<Law, Refusal> {
-        let pid = self.within_ms()?;
-        let most = self.request.ms_max;
-        let made = match (self.request.observer_filter, most) {
-            (ObserverFilter::Time(alpha), _) => ObserverDesign::with_alpha(&self.delayed, &pid, alpha),
-            (ObserverFilter::NoiseRatio(ratio), None) => {
-                ObserverDesign::with_noise_ratio(&self.delayed, &pid, ratio)
-            }
-            (ObserverFilter::NoiseRatio(ratio), Some(most)) => {
-                ObserverDesign::within_ms(&self.delayed, &pid, ratio, most)
-            }
-            (ObserverFilter::Default, most) => {
-                let most = most.unwrap_or(DEFAULT_MS_MAX);
-                ObserverDesign::within_ms(&self.delayed, &pid, DEFAULT_NOISE_RATIO, most)
-            }
-        }?;
-        made.warnings.iter().for_each(|warning| self.warn(*warning));
-        self.made.noise.an = Some(made.an);
-        let mut observer: ObserverConfig = made.observer;
-        // The block adds the latency itself.
-        observer.model.dead_time = self.plant.dead_time();
-        Ok(Law::Pid { pid, estimator: None, observer: Some(observer) })
-    }
-
-    fn least_iae(&mut self) -> Result<Law, Refusal> {
-        let made = PiIae::new(&self.delayed)?;
-        made.warnings.iter().for_each(|warning| self.warn(*warning));
-        self.made.iae_load = Some(made.iae);
-        Ok(plain(made.pid))
     }
 
     fn warn(&mut self, warning: Warning) {
@@ -231,8 +213,31 @@ fn late(plant: &TransferFunction, latency: f64) -> Result<TransferFunction, Refu
     })
 }
 
+/// The continuous loop of a law.
+fn continuous(plant: &TransferFunction, law: &Law, latency: f64) -> Result<ContinuousLoop, Refusal> {
+    let Law::Pid { pid, estimator, observer } = law;
+    let mut made = ContinuousLoop::new(plant, pid).with_latency(latency);
+    if let Some(estimator) = estimator {
+        made = made.with_estimator(estimator)?;
+    }
+    if let Some(observer) = observer {
+        made = made.with_observer(observer)?;
+    }
+    Ok(made)
+}
+
+/// The delay margin in samples when it is so small that the sampling matters.
+fn few_samples(margins: &Margins, ts: f64) -> Option<f64> {
+    let samples = margins.delay_margin / ts;
+    (samples < FEW_SAMPLES).then_some(samples)
+}
+
 fn check(parameter: &'static str, value: f64, min: f64, max: f64) -> Result<(), Refusal> {
-    if (min..=max).contains(&value) { Ok(()) } else { Err(Refusal::OutOfRange { parameter, value, min, max }) }
+    if (min..=max).contains(&value) {
+        Ok(())
+    } else {
+        Err(Refusal::OutOfRange { parameter, value, min, max })
+    }
 }
 
 /// What can be said of the loop as a whole.
@@ -258,7 +263,8 @@ fn finish(
         }
     }
     if let Some(samples) = few_samples(&robustness, request.ts) {
-        let text = "the delay margin in samples: below 10 the sampling itself costs robustness; choose a shorter ts";
+        let text =
+            "the delay margin in samples: below 10 the sampling itself costs robustness; choose a shorter ts";
         warn(&mut warnings, Warning::Value { about: "ts", value: samples, text });
     }
     Ok(Design {

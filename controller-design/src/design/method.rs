@@ -107,16 +107,30 @@ impl Method {
     #[must_use]
     pub const fn when(self) -> &'static str {
         match self {
-            Self::Momi => "set-point changes matter most: fast and without overshoot; loads are rejected slowly when lags dominate",
-            Self::Drmo => "loads matter most and no model shall run in the controller; set-point steps want b below 1",
-            Self::DeMomi => "loads and set-point both matter and a second-order model of the plant can be trusted",
+            Self::Momi => {
+                "set-point changes matter most: fast and without overshoot; loads are rejected slowly when lags dominate"
+            }
+            Self::Drmo => {
+                "loads matter most and no model shall run in the controller; set-point steps want b below 1"
+            }
+            Self::DeMomi => {
+                "loads and set-point both matter and a second-order model of the plant can be trusted"
+            }
             Self::PiMs => "a plain PI with a guaranteed distance from instability is wanted",
-            Self::Dob => "a PI is there or wanted, loads must vanish without a lasting integral, and the model is good",
-            Self::PiIae => "step loads at the input matter most, the plant is well known and does not change: the robustness is low",
+            Self::Dob => {
+                "a PI is there or wanted, loads must vanish without a lasting integral, and the model is good"
+            }
+            Self::PiIae => {
+                "step loads at the input matter most, the plant is well known and does not change: the robustness is low"
+            }
             Self::Ah => "a classic to compare with; oscillates on some plants",
-            Self::Adrc => "the plant's order is known to be two and little else; noise is low and sampling fast",
+            Self::Adrc => {
+                "the plant's order is known to be two and little else; noise is low and sampling fast"
+            }
             Self::Amigo => "a first-order model is all there is and robustness (Ms about 1.4) comes first",
-            Self::Simc => "a first- or second-order model is all there is and one number shall trade speed for robustness",
+            Self::Simc => {
+                "a first- or second-order model is all there is and one number shall trade speed for robustness"
+            }
         }
     }
 }

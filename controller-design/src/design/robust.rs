@@ -1,7 +1,7 @@
 //! Keeping a loop with a disturbance estimator within a maximum sensitivity.
 
 use crate::margins::ContinuousLoop;
-use crate::model::{Sopdt, TransferFunction};
+use crate::model::TransferFunction;
 use crate::rules::de_momi;
 use crate::rules::reduction::Reduced;
 use crate::warning::warn;
@@ -17,7 +17,8 @@ const HALVINGS: usize = 40;
 const LEAST_SHARE: f64 = 0.3;
 
 /// Changes `estimator` until the loop's maximum sensitivity is at most `most`: first `tfd` is raised, `kfd` following by
-/// eqs (18), (19) of Vrančić & Huba 2021, as long as that keeps at least 30 % of the first gain; then `kfd` is cut.
+/// eqs (18), (19) of Vrančić & Huba 2021, as long as that keeps at least 30 % of the first gain; then `kfd` is cut. `hold` is the delay of
+/// the sampling, half a period \[s\].
 ///
 /// # Errors
 /// The loop is above `most` without any estimator, or not stable.
@@ -26,20 +27,21 @@ pub(super) fn within(
     pid: &PidConfig,
     estimator: &mut EstimatorConfig,
     model: &Reduced,
-    most: f64,
+    (most, hold): (f64, f64),
     warnings: &mut Warnings,
 ) -> Result<(), Refusal> {
     if !(most > 1.0 && most <= 100.0) {
         return Err(Refusal::OutOfRange { parameter: "ms_max", value: most, min: 1.0, max: 100.0 });
     }
     let ms = |estimator: &EstimatorConfig| {
-        let margins = ContinuousLoop::new(plant, pid).with_estimator(estimator).and_then(|l| l.margins());
+        let loop_ = ContinuousLoop::new(plant, pid).with_latency(hold).with_estimator(estimator);
+        let margins = loop_.and_then(|loop_| loop_.margins());
         margins.map_or(f64::INFINITY, |margins| margins.ms)
     };
     if ms(estimator) <= most {
         return Ok(());
     }
-    let plain = ContinuousLoop::new(plant, pid).margins()?.ms;
+    let plain = ContinuousLoop::new(plant, pid).with_latency(hold).margins()?.ms;
     if plain > most {
         return Err(Refusal::Unattainable { what: "ms_max", asked: most, least: plain });
     }

@@ -63,7 +63,21 @@ impl DeMomi {
     /// As for [`Momi::with_noise_limit`] and [`Reduced::new`]; a `kden` that is not above 0.
     pub fn with_noise_limits(areas: &Areas, kpidn: f64, kden: f64, ts: f64) -> Result<Self, Refusal> {
         positive("kden", kden)?;
-        let momi = Momi::with_noise_limit(areas, kpidn, ts)?;
+        Self::limited(areas, Momi::with_noise_limit(areas, kpidn, ts)?, kden, ts)
+    }
+
+    /// The parameters for a given filter time constant `tf` of the PID \[s\] and the shortest filter of the estimator, at
+    /// least `ts`, that keeps its noise gain at `w_HF` within `kden` \[u/y\].
+    ///
+    /// # Errors
+    /// As for [`Momi::new`] and [`Reduced::new`]; a `kden` or `ts` that is not above 0.
+    pub fn with_estimator_limit(areas: &Areas, tf: f64, kden: f64, ts: f64) -> Result<Self, Refusal> {
+        positive("kden", kden)?;
+        positive("ts", ts)?;
+        Self::limited(areas, Momi::new(areas, tf)?, kden, ts)
+    }
+
+    fn limited(areas: &Areas, momi: Momi, kden: f64, ts: f64) -> Result<Self, Refusal> {
         let model = Reduced::new(areas)?;
         let pid = momi.pid;
         let mut design = Self::with(momi, model, |model| shortest_tfd(&pid, model, kden, ts));

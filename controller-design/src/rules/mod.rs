@@ -15,7 +15,7 @@ pub mod noise_limit;
 pub mod reduction;
 
 #[cfg(feature = "std")]
-mod pi_ms;
+pub mod pi_ms;
 
 #[cfg(feature = "std")]
 pub use pi_ms::PiMs;

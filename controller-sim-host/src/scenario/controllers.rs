@@ -1,14 +1,18 @@
 //! A `[[controller]]` as it is read, and as events change it.
 
 use super::compensators;
+use super::designs;
 use super::fault::{Fault, code};
+use super::log::Log;
 use super::pid::PidDraft;
 use super::places::Places;
+use super::plants::Plant;
 use super::sections::{alarms, anti_windup, fallback, limits, mode, range, setpoint, take, take_optional};
 use super::table::Table;
 use super::value::shortened;
 use super::{CompensatorSpec, ControllerSpec};
 use controller_core::{ControllerConfig, Mode, Param};
+use controller_design::model::TransferFunction;
 use std::ops::Range;
 
 const PID: &str = "`pid = { kp = 1.0, ki = 0.5 }`";
@@ -36,6 +40,8 @@ pub(super) struct Draft {
     pub(super) places: Places,
     /// The loop inside of a cascade, and where its key is.
     pub(super) secondary: Option<(Box<Draft>, Range<usize>)>,
+    /// What its parameters are to be designed from.
+    wish: Option<designs::Wish>,
 }
 
 impl Draft {
@@ -75,6 +81,7 @@ impl Draft {
     fn read_law(table: Table<'_>, name: String, mode: Mode) -> Self {
         let mut places = Places::new(table.place.clone());
         let mut config = ControllerConfig::default();
+        let wish = designs::read(&table, &mut places);
         let pid = read_pid(&table, &mut places);
         let compensator = compensators::read(&table, &mut places);
         if let Some(part) = table.table("limits", LIMITS) {
@@ -105,7 +112,7 @@ impl Draft {
         take(&table, "initial_output", Param::InitialOutput, &mut places, &mut config.initial_output);
         table.finish();
         let spec = ControllerSpec { name, config, compensator, mode, secondary: None };
-        Self { pid, spec, name_span: None, places, secondary: None }
+        Self { pid, spec, name_span: None, places, secondary: None, wish }
     }
 
     /// Reads the parameter keys of an event over what the controller had so far.
@@ -126,6 +133,23 @@ impl Draft {
         }
         take(event, "deadband", Param::Deadband, places, &mut spec.config.deadband);
         compensators::change(event, spec, places);
+    }
+
+    /// Fulfils a wish for a design, once the plant and the sampling period are known.
+    pub(super) fn design(&mut self, plant: &Plant, ts: f64, latency: f64, log: &Log<'_>) {
+        if let (Some((inner, _)), Some([part, _])) = (&mut self.secondary, &plant.parts) {
+            inner.fulfil(part, ts, latency, log);
+        }
+        self.fulfil(&plant.whole, ts, latency, log);
+    }
+
+    fn fulfil(&mut self, plant: &TransferFunction, ts: f64, latency: f64, log: &Log<'_>) {
+        let Some(wish) = &self.wish else { return };
+        match wish.fulfil(plant, ts, latency, &mut self.spec) {
+            Ok(warnings) => warnings.into_iter().for_each(|warning| log.warn(warning)),
+            Err(fault) => log.fault(fault),
+        }
+        self.pid = PidDraft::parallel(self.spec.config.pid);
     }
 
     pub(super) fn name(&self) -> &str {
@@ -154,7 +178,7 @@ impl Draft {
 
 /// The model of a disturbance block is one of what the controller drives: here a closed loop.
 fn refuse_compensator(table: &Table<'_>, secondary: &Range<usize>) {
-    for key in ["estimator", "observer"] {
+    for key in ["estimator", "observer", "design"] {
         if let Some(span) = table.key_span(key) {
             let message =
                 format!("a primary controller has no `{key}`: it drives a closed loop, not the plant");
@@ -192,12 +216,6 @@ fn read_name(table: &Table<'_>) -> (String, Option<Range<usize>>) {
 
 fn read_pid(table: &Table<'_>, places: &mut Places) -> PidDraft {
     let design = table.key_span("design");
-    if let Some(span) = design.clone() {
-        table.log.fault(
-            Fault::new(code::NOT_SUPPORTED, span, "the design rules are not part of this version")
-                .help("write the gains: `pid = { kp = ..., ki = ... }`"),
-        );
-    }
     if table.span("pid").is_none() && design.is_none() {
         table.missing("pid", PID);
     }

@@ -26,6 +26,8 @@ pub mod code {
     pub const EXPRESSION: &str = "expression";
     /// A name that nothing has.
     pub const UNKNOWN_NAME: &str = "unknown-name";
+    /// A design that a rule refuses; as a warning, what there is to know about one.
+    pub const DESIGN: &str = "design";
     /// Something this version of the program cannot do.
     pub const NOT_SUPPORTED: &str = "not-supported";
     /// A file that a scenario names and that cannot be read.

@@ -5,6 +5,7 @@ mod cases;
 mod columns;
 mod compensators;
 mod controllers;
+mod designs;
 mod events;
 mod explain;
 mod expression;
@@ -37,15 +38,18 @@ mod table;
 mod texts;
 mod trial;
 mod value;
+mod write;
 
 pub use cases::{Case, ReadAll, read_with};
 pub use fault::{Fault, Place, Related, SourceText, code};
+pub(crate) use designs::apply;
 pub use files::{Files, FolderFiles, NoFiles};
 pub(crate) use number::{show, show_short};
 pub use override_key::override_key;
 pub use read::{Read, VERSION, read};
 pub use signal::{Between, Recording, Signal};
 pub(crate) use suggest::closest;
+pub use write::DesignFile;
 
 use controller_core::{ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
 use controller_design::model::TransferFunction;

@@ -60,6 +60,11 @@ impl PidDraft {
         PidConfig { kp: gains.kp, ki: gains.ki, kd: gains.kd, ..self.rest }
     }
 
+    /// A PID in parallel form.
+    pub(super) fn parallel(config: PidConfig) -> Self {
+        Self { form: Form::Parallel, values: [config.kp, config.ki, config.kd], rest: config }
+    }
+
     /// Whether the gains were computed from others.
     pub(super) fn is_converted(&self) -> bool {
         self.form != Form::Parallel

@@ -227,7 +227,10 @@ fn read_controllers(roots: &Roots<'_>, context: &Context<'_>, plant: Option<&Pla
     let mut drafts: Vec<Draft> = Vec::new();
     for table in roots.all().flat_map(|table| table.tables("controller")) {
         let before = log.count();
-        let draft = Draft::read(table);
+        let mut draft = Draft::read(table);
+        if let (Some(plant), Some(ts), true) = (plant, context.ts, log.count() == before) {
+            draft.design(plant, ts, context.latency, log);
+        }
         check_laws(&draft, context, plant, log, before);
         let twin = drafts
             .iter()

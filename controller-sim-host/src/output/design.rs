@@ -1,0 +1,139 @@
+//! A design for people: what was designed, what it promises, what to do with it.
+
+use super::table::format_number;
+use crate::scenario::show_short;
+use controller_core::PidConfig;
+use controller_design::areas::Areas;
+use controller_design::design::{Design, Law};
+use std::fmt::Write;
+
+/// What was designed as text, at most 100 columns wide. `saved` is the file it was written to.
+#[must_use]
+pub fn design_table(made: &Design, saved: Option<&str>) -> String {
+    let mut text = format!("{} for {}\n", made.method.title(), made.plant);
+    let latency = if made.latency > 0.0 { format!(", latency {} s", made.latency) } else { String::new() };
+    line(&mut text, format_args!("{}, ts = {} s{latency}", made.method.source(), made.ts));
+    text.push_str("\nparameters\n");
+    for (name, value) in parameters(&made.law) {
+        line(&mut text, format_args!("  {name:<22}{value}"));
+    }
+    if let Some(model) = &made.model {
+        line(&mut text, format_args!("  {:<22}{}", "model of the rule", short(model)));
+    }
+    if let Some(areas) = &made.areas {
+        line(&mut text, format_args!("  {:<22}{}", "areas A0..A5", list(areas)));
+    }
+    margins(&mut text, made);
+    predicted(&mut text, made);
+    if !made.warnings.is_empty() {
+        text.push_str("\nnotes\n");
+        for warning in &made.warnings {
+            line(&mut text, format_args!("  {warning}"));
+        }
+    }
+    match saved {
+        Some(path) => {
+            let path = crate::cli::quoted(path);
+            line(&mut text, format_args!("\nwrote {path}; run it with: controller-sim run {path}"));
+        }
+        None => text.push_str("\nadd `--save loop.toml` for a file that `controller-sim run` and `analyze` read\n"),
+    }
+    text
+}
+
+/// A line; writing to a text cannot fail.
+fn line(text: &mut String, content: std::fmt::Arguments<'_>) {
+    let _ = writeln!(text, "{content}");
+}
+
+fn short(model: &controller_design::model::TransferFunction) -> String {
+    model.to_string()
+}
+
+fn list(areas: &Areas) -> String {
+    areas.values().map(format_number).join("  ")
+}
+
+/// Every parameter with its unit.
+fn parameters(law: &Law) -> Vec<(&'static str, String)> {
+    let mut rows = Vec::new();
+    let mut row = |name: &'static str, value: f64, unit: &str| {
+        rows.push((name, format!("{} {unit}", show_short(value)).trim_end().to_owned()));
+    };
+    let Law::Pid { pid, estimator, observer } = law;
+    let PidConfig { kp, ki, kd, tf, b, c, .. } = *pid;
+    for (name, value, unit) in
+        [("kp", kp, "u/y"), ("ki", ki, "u/(y s)"), ("kd", kd, "u s/y"), ("tf", tf, "s"), ("b", b, ""), ("c", c, "")]
+    {
+        row(name, value, unit);
+    }
+    if let Some(e) = estimator {
+        row("estimator: gain", e.gain, "y/u");
+        row("estimator: a1", e.a1, "s");
+        row("estimator: a2", e.a2, "s^2");
+        row("estimator: dead_time", e.dead_time, "s");
+        row("estimator: kfd", e.kfd, "");
+        row("estimator: tfd", e.tfd, "s");
+    }
+    if let Some(o) = observer {
+        row("observer: alpha", o.alpha, "s");
+        if let Some(order) = o.order {
+            rows.push(("observer: order", order.to_string()));
+        }
+    }
+    rows
+}
+
+/// The margins of the continuous design beside those of the law that will run.
+fn margins(text: &mut String, made: &Design) {
+    let (one, two) = (&made.robustness, &made.sampled.margins);
+    line(text, format_args!("\n{:<24}{:>12}{:>12}", "robustness", "continuous", "sampled"));
+    let rows = [
+        ("Ms", one.ms, two.ms, ""),
+        ("Mt", one.mt, two.mt, ""),
+        ("gain margin", one.gm, two.gm, ""),
+        ("phase margin", one.pm_deg, two.pm_deg, "deg"),
+        ("delay margin", one.delay_margin, two.delay_margin, "s"),
+        ("", one.delay_margin / made.ts, two.delay_margin / made.ts, "samples"),
+    ];
+    for (name, one, two, unit) in rows {
+        let (one, two) = (number(one), number(two));
+        line(text, format_args!("  {name:<22}{one:>12}{two:>12} {unit}"));
+    }
+    let noise = &made.sampled.noise;
+    line(text, format_args!("\n{:<24}{:>12}{:>12}", "noise gain [u/y]", "formula", "sampled"));
+    let rows = [
+        ("PID, K_PIDn", made.noise.kpidn, Some(noise.kpidn)),
+        ("estimator, K_DEn", made.noise.kden, made.noise.kden.map(|_| noise.kden)),
+        ("PI + observer, A_n", made.noise.an, made.noise.an.map(|_| noise.step)),
+        ("white noise, std(u)/std(n)", None, Some(noise.white)),
+    ];
+    for (name, formula, sampled) in rows {
+        if formula.is_some() || sampled.is_some() {
+            let cell = |x: Option<f64>| x.map_or(String::new(), number);
+            let (formula, sampled) = (cell(formula), cell(sampled));
+            line(text, format_args!("{:<26}{formula:>10}{sampled:>12}", format!("  {name}")));
+        }
+    }
+}
+
+fn number(x: f64) -> String {
+    if x == f64::INFINITY { "none".to_owned() } else { format_number(x) }
+}
+
+fn predicted(text: &mut String, made: &Design) {
+    let rows = [
+        ("IE, unit set-point step", made.predicted.ie_setpoint),
+        ("IE, unit load step", made.predicted.ie_load),
+        ("IAE, unit load step", made.predicted.iae_load),
+    ];
+    if rows.iter().all(|(_, value)| value.is_none()) {
+        return;
+    }
+    text.push_str("\npredicted\n");
+    for (name, value) in rows {
+        if let Some(value) = value {
+            line(text, format_args!("  {name:<24}{:>10} y s", number(value)));
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! A design as JSON; the names are those of the files and of the papers.
+
+use super::json::text;
+use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
+use controller_design::design::{Design, Law};
+use controller_design::margins::{Margins, NoiseGains};
+use serde::Serialize;
+
+#[derive(Serialize)]
+pub(super) struct Designed<'a> {
+    method: &'static str,
+    source: &'static str,
+    plant: String,
+    ts: f64,
+    latency: f64,
+    areas: Option<[f64; 6]>,
+    filtered_areas: Option<[f64; 6]>,
+    pid: Option<Pid>,
+    model: Option<String>,
+    estimator: Option<Estimator>,
+    observer: Option<Observer>,
+    robustness: Robustness,
+    sampled: Robustness,
+    noise: Noise,
+    sampled_noise: SampledNoise,
+    predicted: Predicted,
+    warnings: Vec<String>,
+    saved: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+pub(super) struct Pid {
+    kp: f64,
+    ki: f64,
+    kd: f64,
+    tf: f64,
+    b: f64,
+    c: f64,
+}
+
+#[derive(Serialize)]
+pub(super) struct Estimator {
+    gain: f64,
+    a1: f64,
+    a2: f64,
+    dead_time: f64,
+    kfd: f64,
+    tfd: f64,
+}
+
+#[derive(Serialize)]
+pub(super) struct Observer {
+    alpha: f64,
+    order: Option<usize>,
+}
+
+/// Null where a margin cannot be used up.
+#[derive(Serialize)]
+pub(super) struct Robustness {
+    ms: f64,
+    mt: f64,
+    gm: f64,
+    pm_deg: f64,
+    delay_margin: f64,
+}
+
+#[derive(Serialize)]
+struct Noise {
+    kpidn: Option<f64>,
+    kden: Option<f64>,
+    an: Option<f64>,
+}
+
+#[derive(Serialize)]
+pub(super) struct SampledNoise {
+    kpidn: f64,
+    kden: f64,
+    an: f64,
+    white: f64,
+}
+
+#[derive(Serialize)]
+struct Predicted {
+    ie_setpoint: Option<f64>,
+    ie_load: Option<f64>,
+    iae_load: Option<f64>,
+}
+
+impl From<&PidConfig> for Pid {
+    fn from(pid: &PidConfig) -> Self {
+        let [kp, ki, kd] = pid.signed_gains();
+        Self { kp, ki, kd, tf: pid.tf, b: pid.b, c: pid.c }
+    }
+}
+
+impl From<&EstimatorConfig> for Estimator {
+    fn from(e: &EstimatorConfig) -> Self {
+        Self { gain: e.gain, a1: e.a1, a2: e.a2, dead_time: e.dead_time, kfd: e.kfd, tfd: e.tfd }
+    }
+}
+
+impl From<&ObserverConfig> for Observer {
+    fn from(o: &ObserverConfig) -> Self {
+        Self { alpha: o.alpha, order: o.order }
+    }
+}
+
+impl From<&Margins> for Robustness {
+    fn from(m: &Margins) -> Self {
+        Self { ms: m.ms, mt: m.mt, gm: m.gm, pm_deg: m.pm_deg, delay_margin: m.delay_margin }
+    }
+}
+
+impl From<&NoiseGains> for SampledNoise {
+    fn from(n: &NoiseGains) -> Self {
+        Self { kpidn: n.kpidn, kden: n.kden, an: n.step, white: n.white }
+    }
+}
+
+impl<'a> Designed<'a> {
+    pub(super) fn new(made: &'a Design, saved: Option<&'a str>) -> Self {
+        let Law::Pid { pid, estimator, observer } = &made.law;
+        Self {
+            method: made.method.name(),
+            source: made.method.source(),
+            plant: made.plant.to_string(),
+            ts: made.ts,
+            latency: made.latency,
+            areas: made.areas.map(|areas| areas.values()),
+            filtered_areas: made.filtered_areas.map(|areas| areas.values()),
+            pid: Some(pid.into()),
+            model: made.model.as_ref().map(ToString::to_string),
+            estimator: estimator.as_ref().map(Into::into),
+            observer: observer.as_ref().map(Into::into),
+            robustness: (&made.robustness).into(),
+            sampled: (&made.sampled.margins).into(),
+            noise: Noise { kpidn: made.noise.kpidn, kden: made.noise.kden, an: made.noise.an },
+            sampled_noise: (&made.sampled.noise).into(),
+            predicted: Predicted {
+                ie_setpoint: made.predicted.ie_setpoint,
+                ie_load: made.predicted.ie_load,
+                iae_load: made.predicted.iae_load,
+            },
+            warnings: made.warnings.iter().map(ToString::to_string).collect(),
+            saved,
+        }
+    }
+}
+
+/// A design: see `schema.json`.
+#[must_use]
+pub fn design_json(made: &Design, saved: Option<&str>) -> String {
+    text(&Designed::new(made, saved))
+}
