@@ -7,8 +7,8 @@
 //! use controller_design::batch134::processes;
 //! let list = processes();
 //! assert_eq!(list.len(), 134);
-//! assert_eq!(list[78].name, "P6 T=0.05");
-//! assert_eq!(list[78].expression, "exp(-0.05*s)/(s*(1+0.95*s))");
+//! assert_eq!(list[70].name, "P6 T=0.05");
+//! assert_eq!(list[70].expression, "exp(-0.05*s)/(s*(1+0.95*s))");
 //! assert!(list.iter().all(|process| process.plant().is_ok()));
 //! ```
 

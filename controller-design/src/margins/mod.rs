@@ -23,7 +23,7 @@ mod paths;
 mod scan;
 
 pub use continuous::ContinuousLoop;
-pub(crate) use paths::Paths;
+pub(crate) use paths::{Paths, lead, split_zeros};
 
 /// The distances of a stable loop from instability; frequencies in rad/s.
 ///

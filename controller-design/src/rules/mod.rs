@@ -16,6 +16,11 @@ pub mod reduction;
 
 #[cfg(feature = "std")]
 pub mod pi_ms;
+mod observer;
+#[cfg(feature = "std")]
+mod pi_ms;
 
+#[cfg(feature = "std")]
+pub use observer::ObserverDesign;
 #[cfg(feature = "std")]
 pub use pi_ms::PiMs;
