@@ -18,6 +18,7 @@
 //! * [`margins`]: sensitivity peaks, gain, phase and delay margins of a design.
 //! * [`design`]: one door to all tuning rules, with the margins and noise gains of what they give.
 //! * [`hold`]: plants as a sampled controller sees them, exactly.
+//! * [`response`]: load responses of continuous loops with dead time, and their indices.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
@@ -38,6 +39,8 @@ pub mod margins;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod refusal;
+#[cfg(feature = "std")]
+pub mod response;
 pub mod rules;
 pub mod warning;
 
