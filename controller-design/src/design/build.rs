@@ -1,13 +1,17 @@
 //! From a request to a design, rule by rule.
 
 use super::robust::within;
-use super::{Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Predicted, Request};
+use super::{
+    Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Predicted, Request, RuleModel,
+    Sampled,
+};
 use crate::areas::Areas;
 use crate::margins::ContinuousLoop;
 use crate::margins::Margins;
-use crate::model::{Sopdt, TransferFunction};
+use crate::model::TransferFunction;
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
-use crate::rules::{de_momi::DeMomi, drmo::Drmo, momi::Momi, pi_ms::PiMs};
+use crate::rules::reduction::Reduced;
+use crate::rules::{de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::ObserverDesign, pi_ms::PiMs};
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
 use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
@@ -60,7 +64,7 @@ pub fn design_with_areas(
 #[derive(Default)]
 struct Made {
     areas: Option<Areas>,
-    model: Option<TransferFunction>,
+    model: Option<RuleModel>,
     noise: Noise,
     iae_load: Option<f64>,
     warnings: Warnings,
@@ -82,6 +86,7 @@ impl Job<'_> {
             Method::Drmo => self.by_areas(PidRule::Drmo),
             Method::DeMomi => self.with_estimator(),
             Method::PiMs => self.within_ms().map(plain),
+            Method::Dob => self.with_observer(),
             _ => Err(Refusal::NoSolution {
                 why: "the rule is not part of this version",
                 help: "use another one",
@@ -158,8 +163,8 @@ impl Job<'_> {
         }?;
         made.warnings.iter().for_each(|warning| self.warn(*warning));
         let model = &made.model;
-        let sopdt = Sopdt { gain: model.gain, a1: model.a1, a2: model.a2, dead_time: model.dead_time };
-        self.made.model = sopdt.transfer_function().ok();
+        let Reduced { gain, a1, a2, dead_time, .. } = *model;
+        self.made.model = Some(RuleModel { gain, integrators: 0, a1, a2, dead_time });
         let Some(mut estimator) = made.estimator else { return Ok(plain(made.pid)) };
         if let Some(most) = self.request.ms_max {
             let latency = 0.5 * ts;
@@ -188,6 +193,30 @@ impl Job<'_> {
         let made = PiMs::new(&self.delayed, self.request.ms.unwrap_or(DEFAULT_MS))?;
         made.warnings.iter().for_each(|warning| self.warn(*warning));
         Ok(made.pid)
+    }
+
+    fn with_observer(&mut self) -> Result<Law, Refusal> {
+        let pid = self.within_ms()?;
+        let most = self.request.ms_max;
+        let made = match (self.request.observer_filter, most) {
+            (ObserverFilter::Time(alpha), _) => ObserverDesign::with_alpha(&self.delayed, &pid, alpha),
+            (ObserverFilter::NoiseRatio(ratio), None) => {
+                ObserverDesign::with_noise_ratio(&self.delayed, &pid, ratio)
+            }
+            (ObserverFilter::NoiseRatio(ratio), Some(most)) => {
+                ObserverDesign::within_ms(&self.delayed, &pid, ratio, most)
+            }
+            (ObserverFilter::Default, most) => {
+                let most = most.unwrap_or(DEFAULT_MS_MAX);
+                ObserverDesign::within_ms(&self.delayed, &pid, DEFAULT_NOISE_RATIO, most)
+            }
+        }?;
+        made.warnings.iter().for_each(|warning| self.warn(*warning));
+        self.made.noise.an = Some(made.an);
+        let mut observer: ObserverConfig = made.observer;
+        // The block adds the latency itself.
+        observer.model.dead_time = self.plant.dead_time();
+        Ok(Law::Pid { pid, estimator: None, observer: Some(observer) })
     }
 
     fn warn(&mut self, warning: Warning) {

@@ -16,13 +16,13 @@ mod method;
 mod request;
 mod robust;
 
-pub use build::design;
+pub use build::{design, design_with_areas};
 pub use method::Method;
 pub use request::{EstimatorFilter, Filter, ObserverFilter, Request};
 
 use crate::Warnings;
 use crate::areas::Areas;
-use crate::margins::Margins;
+use crate::margins::{Margins, NoiseGains};
 use crate::model::TransferFunction;
 use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
 
@@ -58,15 +58,42 @@ pub struct Design {
     /// The areas with the filter of the PID, eq. (7) of Vrančić & Huba 2021.
     pub filtered_areas: Option<Areas>,
     /// The model that the rule puts in the plant's place, when it is not the plant itself.
-    pub model: Option<TransferFunction>,
+    pub model: Option<RuleModel>,
     /// Margins of the continuous loop of plant, latency and law.
     pub robustness: Margins,
+    /// Margins and noise gains of the sampled law that will run, with hold and latency.
+    pub sampled: Sampled,
     /// Noise gains by their formulas.
     pub noise: Noise,
     /// What the loop will do.
     pub predicted: Predicted,
     /// What a person should know.
     pub warnings: Warnings,
+}
+
+/// What holds of the law that will run on the sampled plant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampled {
+    /// Its margins.
+    pub margins: Margins,
+    /// How much noise of the measurement reaches the output.
+    pub noise: NoiseGains,
+}
+
+/// A model that a rule puts in the plant's place:
+/// `gain*exp(-dead_time*s)/(s^integrators*(1 + a1*s + a2*s^2))`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RuleModel {
+    /// Gain [y/u/s^integrators].
+    pub gain: f64,
+    /// 0 or 1.
+    pub integrators: usize,
+    /// Coefficient of `s` \[s\].
+    pub a1: f64,
+    /// Coefficient of `s^2` [s^2].
+    pub a2: f64,
+    /// Dead time \[s\], the latency of the request included.
+    pub dead_time: f64,
 }
 
 /// How much noise of the measurement reaches the output \[u/y\], by the formulas of the papers.

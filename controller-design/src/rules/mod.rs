@@ -6,19 +6,22 @@
 //! * [`drmo`]: PID for disturbances, by the magnitude optimum.
 //! * [`de_momi`]: MOMI with a disturbance estimator; [`reduction`] gives its model.
 //! * [`noise_limit`]: what the controllers make of measurement noise, and filters for a wanted noise gain.
+//!
+//! From the plant itself (feature `std`):
+//!
+//! * [`pi_ms`]: PI of the largest integral gain within a maximum sensitivity.
+//! * [`observer`]: the disturbance observer beside a PI.
 
 pub mod de_momi;
 pub mod drmo;
 mod magnitude_optimum;
 pub mod momi;
 pub mod noise_limit;
-pub mod reduction;
-
+#[cfg(feature = "std")]
+pub mod observer;
 #[cfg(feature = "std")]
 pub mod pi_ms;
-mod observer;
-#[cfg(feature = "std")]
-mod pi_ms;
+pub mod reduction;
 
 #[cfg(feature = "std")]
 pub use observer::ObserverDesign;
