@@ -156,6 +156,11 @@ impl HoldEquivalent {
         self.delay
     }
 
+    /// `exp(p*ts) - 1` of the plant's poles `p`.
+    pub(crate) fn falls(&self) -> &[Complex] {
+        &self.falls
+    }
+
     /// The plant's poles times `ts`: the poles of `G_d` are `exp` of these, those of the delay at 0.
     #[must_use]
     pub fn scaled_poles(&self) -> &[Complex] {

@@ -13,3 +13,4 @@ mod equivalent;
 mod numerator;
 
 pub use equivalent::{HoldEquivalent, MAX_DELAY};
+pub(crate) use equivalent::{delay_by, minus_one};
