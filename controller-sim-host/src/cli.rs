@@ -1,6 +1,7 @@
 //! The command line: arguments, exit codes, what goes to which stream.
 
 mod arguments;
+mod design;
 mod examples;
 mod execute;
 mod gallery;
@@ -13,6 +14,7 @@ mod quoting;
 mod run;
 mod scenarios;
 mod usage;
+mod wish;
 
 use crate::output::{Problem, Trouble, error_json, render_all};
 use arguments::{Arguments, Command, DemoArguments};
@@ -86,6 +88,7 @@ pub fn main() -> ExitCode {
         None => gallery::run(&DemoArguments::default(), json, &command),
         Some(Command::Demo(arguments)) => gallery::run(&arguments, json, &command),
         Some(Command::Run(arguments)) => run::run(&arguments, json, &command),
+        Some(Command::Design(arguments)) => design::run(&arguments, json, &command),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),
         Some(Command::Schema) => pages::schema(),

@@ -43,7 +43,8 @@ fn shortened(plant: &str) -> String {
     format!("{start}...")
 }
 
-/// Time until the response to a step is over: 25 of the slowest time constants there are, in whole samples.
+/// Time until the response to a step is over: 14 of the slowest time constants there are (`exp(-14)` is 1e-6), in
+/// whole samples.
 fn window(made: &Design) -> f64 {
     let plant = &made.plant;
     let rates = plant.poles().into_iter().map(|pole| pole.abs()).filter(|rate| *rate > 0.0);
@@ -64,6 +65,7 @@ fn window(made: &Design) -> f64 {
     if made.method == Method::Adrc {
         slowest *= 2.0;
     }
-    let samples = ((25.0 * slowest + 10.0 * dead_time) / made.ts).clamp(10.0, LONGEST);
-    samples.ceil() * made.ts
+    let samples = ((14.0 * slowest + 10.0 * dead_time) / made.ts).clamp(10.0, LONGEST);
+    // By way of text: a round number of seconds stays one.
+    format!("{:.11e}", samples.ceil() * made.ts).parse().unwrap_or(made.ts)
 }

@@ -5,6 +5,7 @@
 //! * [`plant`]: plants that move exactly between the samples.
 //! * [`output`]: tables, JSON, CSV, messages with carets.
 //! * [`report`]: pages and pictures.
+//! * [`advise`], [`design_file`]: what the tuning rules make of a plant.
 //! * [`cli`]: the program `controller-sim`.
 //!
 //! ```
@@ -20,8 +21,10 @@
 
 #![forbid(unsafe_code)]
 
+pub mod advise;
 pub mod cli;
 pub mod demo;
+pub mod design_file;
 pub mod output;
 pub mod plant;
 pub mod report;

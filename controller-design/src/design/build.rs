@@ -6,7 +6,7 @@ use super::{
     Sampled,
 };
 use crate::areas::Areas;
-use crate::margins::ContinuousLoop;
+use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
 use crate::margins::Margins;
 use crate::model::TransferFunction;
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
@@ -14,7 +14,7 @@ use crate::rules::reduction::Reduced;
 use crate::rules::{de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::ObserverDesign, pi_ms::PiMs};
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
-use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
+use controller_core::{ObserverConfig, PidConfig};
 
 /// Default maximum sensitivity of rules that are given one.
 const DEFAULT_MS: f64 = 1.4;
@@ -255,6 +255,31 @@ fn continuous(plant: &TransferFunction, law: &Law, latency: f64) -> Result<Conti
     Ok(made)
 }
 
+/// The loop of the law that will run on the sampled plant.
+fn sampled(plant: &TransferFunction, law: &Law, request: &Request) -> Result<Sampled, Refusal> {
+    const LONG: Refusal = Refusal::NoSolution {
+        why: "the law cannot be built for this sampling period",
+        help: "choose a shorter ts, so that every time constant is at least ts/1000 and tf at least ts/2",
+    };
+    let Law::Pid { pid, estimator, observer } = law;
+    let estimator = estimator.as_ref().map(|estimator| estimator.to_compensator(request.latency));
+    let observer = observer.as_ref().map(|observer| observer.to_compensator(request.latency));
+    let made = match estimator.or(observer) {
+        Some(compensator) => DiscreteLaw::with_compensator(pid, &compensator, request.ts),
+        None => DiscreteLaw::new(pid, request.ts),
+    };
+    let made = made.map_err(|_| LONG)?;
+    let made = DiscreteLoop::new(plant, made, request.latency)?;
+    let margins = made.margins().map_err(|refusal| match refusal {
+        Refusal::NoSolution { .. } => Refusal::NoSolution {
+            why: "the sampled loop is not stable, although the continuous one is",
+            help: "choose a shorter ts",
+        },
+        other => other,
+    })?;
+    Ok(Sampled { margins, noise: made.noise() })
+}
+
 /// The delay margin in samples when it is so small that the sampling matters.
 fn few_samples(margins: &Margins, ts: f64) -> Option<f64> {
     let samples = margins.delay_margin / ts;
@@ -279,6 +304,7 @@ fn finish(
 ) -> Result<Design, Refusal> {
     let Made { areas, model, mut noise, iae_load, mut warnings } = made;
     let robustness = continuous(plant, &law, request.latency)?.margins()?;
+    let sampled = sampled(plant, &law, request)?;
     let mut predicted = Predicted { iae_load, ..Predicted::default() };
     let mut filtered_areas = None;
     if let Law::Pid { pid, estimator, observer } = &law {
@@ -291,7 +317,7 @@ fn finish(
             predicted.ie_setpoint = Some((static_error + (1.0 - pid.b) * pid.kp) / pid.ki);
         }
     }
-    if let Some(samples) = few_samples(&robustness, request.ts) {
+    if let Some(samples) = few_samples(&sampled.margins, request.ts) {
         let text =
             "the delay margin in samples: below 10 the sampling itself costs robustness; choose a shorter ts";
         warn(&mut warnings, Warning::Value { about: "ts", value: samples, text });
@@ -306,6 +332,7 @@ fn finish(
         filtered_areas,
         model,
         robustness,
+        sampled,
         noise,
         predicted,
         warnings,

@@ -1,8 +1,10 @@
 //! The arguments of the program.
 
 use super::examples;
+use super::wish::Wish;
 use crate::simulate::Precision;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
+use controller_design::design::Method;
 use std::path::PathBuf;
 
 /// Runs the controllers that are flashed against an exactly simulated plant.
@@ -22,6 +24,8 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Runs a built-in scenario, lists them, or writes one to a file
     Demo(DemoArguments),
+    /// Designs a controller for a plant
+    Design(DesignArguments),
     /// Prints the completions for a shell
     Completions(CompletionsArguments),
     /// Prints the manual page
@@ -106,6 +110,28 @@ pub(super) struct Options {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = examples::DESIGN)]
+pub(super) struct DesignArguments {
+    /// The plant, an expression in s such as `2*exp(-0.5*s)/(1+3*s)`
+    #[arg(long, value_name = "EXPR")]
+    pub(super) plant: String,
+    /// The tuning rule; `advise` compares all of them on the plant
+    #[arg(long, value_enum)]
+    pub(super) method: MethodName,
+    /// Sampling period \[s\]; if not given, a round one about 200 times shorter than the plant's response
+    #[arg(long, value_name = "S", value_parser = super::wish::positive)]
+    pub(super) ts: Option<f64>,
+    #[command(flatten)]
+    pub(super) wish: Wish,
+    /// Write the design file, which `run` and `analyze` read
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(super) save: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long, requires = "save")]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
 #[command(after_help = examples::COMPLETIONS)]
 pub(super) struct CompletionsArguments {
     /// The shell
@@ -153,6 +179,52 @@ fn time(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(t) if t.is_finite() && t >= 0.0 => Ok(t),
         _ => Err("write a time in seconds, 0 or above, for example `2.5`".to_owned()),
+    }
+}
+
+/// A tuning rule, or all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum MethodName {
+    /// PID, magnitude optimum by areas: for set-points
+    Momi,
+    /// PID, disturbance-rejection magnitude optimum: for loads
+    Drmo,
+    /// MOMI with a disturbance estimator
+    DeMomi,
+    /// PI of the largest ki within a maximum sensitivity
+    PiMs,
+    /// That PI with a disturbance observer
+    Dob,
+    /// PI of the least IAE after a load step
+    PiIae,
+    /// PID by Åström and Hägglund's kappa-tau rules
+    Ah,
+    /// Active disturbance rejection control, second order
+    Adrc,
+    /// PID by AMIGO
+    Amigo,
+    /// PID by SIMC
+    Simc,
+    /// Compares all of them on the plant
+    Advise,
+}
+
+impl MethodName {
+    /// The one rule, if it is one.
+    pub(super) fn one(self) -> Option<Method> {
+        match self {
+            Self::Momi => Some(Method::Momi),
+            Self::Drmo => Some(Method::Drmo),
+            Self::DeMomi => Some(Method::DeMomi),
+            Self::PiMs => Some(Method::PiMs),
+            Self::Dob => Some(Method::Dob),
+            Self::PiIae => Some(Method::PiIae),
+            Self::Ah => Some(Method::Ah),
+            Self::Adrc => Some(Method::Adrc),
+            Self::Amigo => Some(Method::Amigo),
+            Self::Simc => Some(Method::Simc),
+            Self::Advise => None,
+        }
     }
 }
 

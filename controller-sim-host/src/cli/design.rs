@@ -1,6 +1,7 @@
 //! `design`: from a plant to a controller.
 
 use super::arguments::DesignArguments;
+use super::quoting::quoted;
 use super::wish::usual_period;
 use super::{Failure, print};
 use crate::advise::advise;
@@ -17,6 +18,10 @@ pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Res
     let plant = plant(&arguments.plant)?;
     let ts = arguments.ts.unwrap_or_else(|| usual_period(&plant));
     let Some(method) = arguments.method.one() else {
+        if arguments.save.is_some() {
+            let problem = Problem::new("usage", "`--save` needs one method; `advise` compares all of them");
+            return Err(problem.help("choose one of them, then save it").into());
+        }
         let advice = advise(&plant, ts, |method| arguments.wish.request(method, ts, None));
         return Ok(print(&if json { output::advice_json(&advice) } else { output::advice_table(&advice) })?);
     };
@@ -31,11 +36,14 @@ pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Res
         target.write(|to| to.write_all(file.text().as_bytes())).map_err(Failure::internal)?;
     }
     let saved = target.map(|target| target.path().display().to_string());
-    Ok(print(&if json {
-        output::design_json(&made, saved.as_deref())
-    } else {
-        output::design_table(&made, saved.as_deref())
-    })?)
+    if json {
+        return Ok(print(&output::design_json(&made, saved.as_deref()))?);
+    }
+    let next = match saved.map(|path| quoted(&path)) {
+        Some(path) => format!("\nwrote {path}; run it with: controller-sim run {path}\n"),
+        None => "\nadd `--save loop.toml` for a file that `run` and `analyze` read\n".to_owned(),
+    };
+    Ok(print(&(output::design_table(&made) + &next))?)
 }
 
 /// The plant of the command line.

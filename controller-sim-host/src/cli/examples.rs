@@ -34,6 +34,15 @@ Examples:
 
 A name that several names begin with runs all of them in order: `windup` all of `windup-...`.";
 
+pub(super) const DESIGN: &str = "\
+Examples:
+  controller-sim design --plant 'exp(-0.2*s)/((1+0.2*s)*(1+s))' --method advise --ts 0.01
+  controller-sim design --plant 'exp(-0.2*s)/((1+0.2*s)*(1+s))' --method de-momi --ts 0.01 --kpidn 4
+  controller-sim design --plant '1.98*exp(-3.2*s)/(1+80.3*s)' --method dob --ms 1.2 --noise-ratio 3 --save loop.toml
+  controller-sim run loop.toml --report loop.html
+
+Exit code 3: the rule has no result for this plant or wish; the message says why and what helps.";
+
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   controller-sim completions bash > ~/.local/share/bash-completion/completions/controller-sim

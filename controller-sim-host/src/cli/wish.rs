@@ -48,7 +48,8 @@ impl Wish {
         request.filter = filter.unwrap_or(request.filter);
         let filter = self.tfd.map(EstimatorFilter::Time).or(self.kden.map(EstimatorFilter::NoiseGain));
         request.estimator_filter = filter.unwrap_or(request.estimator_filter);
-        let filter = self.alpha.map(ObserverFilter::Time).or(self.noise_ratio.map(ObserverFilter::NoiseRatio));
+        let filter =
+            self.alpha.map(ObserverFilter::Time).or(self.noise_ratio.map(ObserverFilter::NoiseRatio));
         request.observer_filter = filter.unwrap_or(request.observer_filter);
         request.ms = self.ms;
         request.ms_max = self.ms_max.or(ms_max);
@@ -133,7 +134,13 @@ mod tests {
     #[test]
     fn the_usual_period_is_round_and_scales_with_the_plant() {
         let of = |plant: &str| usual_period(&parse(plant).expect("a valid plant"));
-        let periods = ["exp(-0.2*s)/((1+0.2*s)*(1+s))", "1/(1+2e-6*s)", "1e-3/(1+1e6*s)", "exp(-s)/s", "1/(1+0.2*s+s^2)"];
+        let periods = [
+            "exp(-0.2*s)/((1+0.2*s)*(1+s))",
+            "1/(1+2e-6*s)",
+            "1e-3/(1+1e6*s)",
+            "exp(-s)/s",
+            "1/(1+0.2*s+s^2)",
+        ];
         assert_eq!(periods.map(of), [0.005, 1e-8, 5000.0, 0.005, 0.01]);
     }
 

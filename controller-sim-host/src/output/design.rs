@@ -4,12 +4,12 @@ use super::table::format_number;
 use crate::scenario::show_short;
 use controller_core::PidConfig;
 use controller_design::areas::Areas;
-use controller_design::design::{Design, Law};
+use controller_design::design::{Design, Law, RuleModel};
 use std::fmt::Write;
 
-/// What was designed as text, at most 100 columns wide. `saved` is the file it was written to.
+/// What was designed as text, at most 100 columns wide.
 #[must_use]
-pub fn design_table(made: &Design, saved: Option<&str>) -> String {
+pub fn design_table(made: &Design) -> String {
     let mut text = format!("{} for {}\n", made.method.title(), made.plant);
     let latency = if made.latency > 0.0 { format!(", latency {} s", made.latency) } else { String::new() };
     line(&mut text, format_args!("{}, ts = {} s{latency}", made.method.source(), made.ts));
@@ -18,7 +18,7 @@ pub fn design_table(made: &Design, saved: Option<&str>) -> String {
         line(&mut text, format_args!("  {name:<22}{value}"));
     }
     if let Some(model) = &made.model {
-        line(&mut text, format_args!("  {:<22}{}", "model of the rule", short(model)));
+        line(&mut text, format_args!("  {:<22}{}", "model of the rule", expression(model)));
     }
     if let Some(areas) = &made.areas {
         line(&mut text, format_args!("  {:<22}{}", "areas A0..A5", list(areas)));
@@ -31,13 +31,6 @@ pub fn design_table(made: &Design, saved: Option<&str>) -> String {
             line(&mut text, format_args!("  {warning}"));
         }
     }
-    match saved {
-        Some(path) => {
-            let path = crate::cli::quoted(path);
-            line(&mut text, format_args!("\nwrote {path}; run it with: controller-sim run {path}"));
-        }
-        None => text.push_str("\nadd `--save loop.toml` for a file that `controller-sim run` and `analyze` read\n"),
-    }
     text
 }
 
@@ -46,8 +39,23 @@ fn line(text: &mut String, content: std::fmt::Arguments<'_>) {
     let _ = writeln!(text, "{content}");
 }
 
-fn short(model: &controller_design::model::TransferFunction) -> String {
-    model.to_string()
+/// The model as an expression, with as many digits as a person reads.
+fn expression(model: &RuleModel) -> String {
+    let RuleModel { gain, integrators, a1, a2, dead_time } = *model;
+    let mut text = show_short(gain);
+    if dead_time > 0.0 {
+        text.push_str(&format!("*exp(-{}*s)", show_short(dead_time)));
+    }
+    let mut bottom: Vec<String> = vec!["s".to_owned(); integrators];
+    let term = |a: f64, s: &str| if a == 0.0 { String::new() } else { format!("+{}*{s}", show_short(a)) };
+    if a1 != 0.0 || a2 != 0.0 {
+        bottom.push(format!("(1{}{})", term(a1, "s"), term(a2, "s^2")));
+    }
+    match &*bottom {
+        [] => text,
+        [only] => format!("{text}/{only}"),
+        several => format!("{text}/({})", several.join("*")),
+    }
 }
 
 fn list(areas: &Areas) -> String {
@@ -62,9 +70,14 @@ fn parameters(law: &Law) -> Vec<(&'static str, String)> {
     };
     let Law::Pid { pid, estimator, observer } = law;
     let PidConfig { kp, ki, kd, tf, b, c, .. } = *pid;
-    for (name, value, unit) in
-        [("kp", kp, "u/y"), ("ki", ki, "u/(y s)"), ("kd", kd, "u s/y"), ("tf", tf, "s"), ("b", b, ""), ("c", c, "")]
-    {
+    for (name, value, unit) in [
+        ("kp", kp, "u/y"),
+        ("ki", ki, "u/(y s)"),
+        ("kd", kd, "u s/y"),
+        ("tf", tf, "s"),
+        ("b", b, ""),
+        ("c", c, ""),
+    ] {
         row(name, value, unit);
     }
     if let Some(e) = estimator {
@@ -98,7 +111,7 @@ fn margins(text: &mut String, made: &Design) {
     ];
     for (name, one, two, unit) in rows {
         let (one, two) = (number(one), number(two));
-        line(text, format_args!("  {name:<22}{one:>12}{two:>12} {unit}"));
+        line(text, format_args!("{}", format!("  {name:<22}{one:>12}{two:>12} {unit}").trim_end()));
     }
     let noise = &made.sampled.noise;
     line(text, format_args!("\n{:<24}{:>12}{:>12}", "noise gain [u/y]", "formula", "sampled"));

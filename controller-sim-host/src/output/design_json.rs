@@ -2,7 +2,7 @@
 
 use super::json::text;
 use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
-use controller_design::design::{Design, Law};
+use controller_design::design::{Design, Law, RuleModel};
 use controller_design::margins::{Margins, NoiseGains};
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ pub(super) struct Designed<'a> {
     areas: Option<[f64; 6]>,
     filtered_areas: Option<[f64; 6]>,
     pid: Option<Pid>,
-    model: Option<String>,
+    model: Option<Model>,
     estimator: Option<Estimator>,
     observer: Option<Observer>,
     robustness: Robustness,
@@ -36,6 +36,15 @@ pub(super) struct Pid {
     tf: f64,
     b: f64,
     c: f64,
+}
+
+#[derive(Serialize)]
+struct Model {
+    gain: f64,
+    a1: f64,
+    a2: f64,
+    dead_time: f64,
+    integrators: usize,
 }
 
 #[derive(Serialize)]
@@ -129,7 +138,13 @@ impl<'a> Designed<'a> {
             areas: made.areas.map(|areas| areas.values()),
             filtered_areas: made.filtered_areas.map(|areas| areas.values()),
             pid: Some(pid.into()),
-            model: made.model.as_ref().map(ToString::to_string),
+            model: made.model.map(|RuleModel { gain, integrators, a1, a2, dead_time }| Model {
+                gain,
+                a1,
+                a2,
+                dead_time,
+                integrators,
+            }),
             estimator: estimator.as_ref().map(Into::into),
             observer: observer.as_ref().map(Into::into),
             robustness: (&made.robustness).into(),

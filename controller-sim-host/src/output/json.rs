@@ -262,7 +262,7 @@ pub fn written_json(paths: &[String]) -> String {
 }
 
 /// These types have text keys and no maps: they can always be written.
-fn text(value: &impl Serialize) -> String {
+pub(super) fn text(value: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(value).unwrap_or_else(|error| {
         format!("{{\"error\": {{\"code\": \"internal\", \"message\": \"{error}\", \"help\": null, \"places\": []}}}}")
     });

@@ -3,7 +3,10 @@
 
 #![doc = include_str!("json.md")]
 
+mod advice;
 mod csv;
+mod design;
+mod design_json;
 mod draft;
 mod faults;
 mod file;
@@ -13,7 +16,10 @@ mod samples;
 pub(crate) mod table;
 
 pub use self::parquet::ParquetWriter;
+pub use advice::{advice_json, advice_table};
 pub use csv::CsvWriter;
+pub use design::design_table;
+pub use design_json::design_json;
 pub use draft::{Complete, Draft, publish, remove_drafts};
 pub use faults::{Problem, Severity, Trouble, render, render_all};
 pub use file::{FileError, FileTarget, is_same_file};

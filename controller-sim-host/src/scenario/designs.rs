@@ -54,7 +54,8 @@ pub(super) fn read(table: &Table<'_>, places: &mut Places) -> Option<Wish> {
     let key = table.key_span("design")?;
     for other in MADE {
         if let Some(span) = table.key_span(other) {
-            let message = format!("`{}` and `design` exclude each other: the design gives it", table.name(other));
+            let message =
+                format!("`{}` and `design` exclude each other: the design gives it", table.name(other));
             let fault = Fault::new(code::CONFLICT, span, message).help("remove one of the two");
             table.log.fault(fault.related(key.clone(), "the design"));
         }
@@ -111,7 +112,8 @@ impl Wish {
         let request = Request { ts, latency, ..self.request };
         let made = design(plant, &request).map_err(|refusal| self.refused(&refusal))?;
         apply(&made, spec);
-        let warn = |text: String| Fault::new(code::DESIGN, self.span.clone(), format!("`{}`: {text}", self.name));
+        let warn =
+            |text: String| Fault::new(code::DESIGN, self.span.clone(), format!("`{}`: {text}", self.name));
         Ok(made.warnings.iter().map(|warning| warn(warning.to_string())).collect())
     }
 

@@ -41,8 +41,8 @@ mod value;
 mod write;
 
 pub use cases::{Case, ReadAll, read_with};
-pub use fault::{Fault, Place, Related, SourceText, code};
 pub(crate) use designs::apply;
+pub use fault::{Fault, Place, Related, SourceText, code};
 pub use files::{Files, FolderFiles, NoFiles};
 pub(crate) use number::{show, show_short};
 pub use override_key::override_key;

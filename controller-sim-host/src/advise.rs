@@ -1,0 +1,106 @@
+//! All tuning rules on one plant, side by side.
+
+use crate::design_file;
+use crate::scenario::read;
+use crate::simulate::{Precision, RunOptions, run};
+use controller_design::Refusal;
+use controller_design::design::{Design, Method, Request, design};
+use controller_design::model::TransferFunction;
+
+/// Delay margin in samples below which a sampling period is too long.
+const FEW_SAMPLES: f64 = 10.0;
+/// Delay margin in samples above which it could be much longer.
+const MANY_SAMPLES: f64 = 200.0;
+
+/// What comes of every rule on a plant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advice {
+    /// The plant.
+    pub plant: TransferFunction,
+    /// Sampling period \[s\].
+    pub ts: f64,
+    /// One row for each rule, in the order of [`Method::ALL`].
+    pub rows: Vec<Row>,
+}
+
+/// One rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The rule.
+    pub method: Method,
+    /// What came of it, or why nothing did.
+    pub outcome: Result<Outcome, Refusal>,
+}
+
+/// The loop that a rule makes, simulated as it will run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The design.
+    pub design: Design,
+    /// Integral of the absolute error after a unit step of the set-point \[y s\].
+    pub iae_setpoint: f64,
+    /// The same after a unit step of the load at the plant's input \[y s\].
+    pub iae_load: f64,
+}
+
+impl Outcome {
+    /// Delay margin of the sampled loop in samples.
+    #[must_use]
+    pub fn delay_margin_samples(&self) -> f64 {
+        self.design.sampled.margins.delay_margin / self.design.ts
+    }
+}
+
+impl Advice {
+    /// Whether the sampling period fits, in a sentence.
+    #[must_use]
+    pub fn on_the_period(&self) -> String {
+        let made =
+            self.rows.iter().filter_map(|row| row.outcome.as_ref().ok().map(|made| (row.method, made)));
+        let slow: Vec<&str> = made
+            .clone()
+            .filter(|(_, made)| made.delay_margin_samples() < FEW_SAMPLES)
+            .map(|(method, _)| method.name())
+            .collect();
+        if !slow.is_empty() {
+            return format!(
+                "ts = {} s is long for {}: less than {FEW_SAMPLES} samples of delay margin; a shorter one makes them more robust",
+                self.ts,
+                slow.join(", ")
+            );
+        }
+        let least = made.map(|(_, made)| made.delay_margin_samples()).fold(f64::INFINITY, f64::min);
+        if least.is_finite() && least > MANY_SAMPLES {
+            return format!("ts = {} s fits; one {:.0} times as long would, too", self.ts, least / 50.0);
+        }
+        format!("ts = {} s fits", self.ts)
+    }
+}
+
+/// Designs a controller by every rule, `request` says with which wishes, and simulates each with unit steps of the
+/// set-point and of the load.
+#[must_use]
+pub fn advise(plant: &TransferFunction, ts: f64, request: impl Fn(Method) -> Request) -> Advice {
+    let row = |method| Row {
+        method,
+        outcome: design(plant, &request(method)).and_then(|made| simulated(made).ok_or(UNSETTLED)),
+    };
+    Advice { plant: plant.clone(), ts, rows: Method::ALL.into_iter().map(row).collect() }
+}
+
+const UNSETTLED: Refusal =
+    Refusal::NoSolution { why: "the simulated loop does not come to rest", help: "choose a shorter ts" };
+
+/// Runs the loop of a design by its own design file.
+fn simulated(made: Design) -> Option<Outcome> {
+    let text = design_file::of(&made, None, "").text();
+    let scenario = read(&text, Precision::F64).ok()?.scenario;
+    let result = run(&scenario, RunOptions::default()).ok()?;
+    let events = &result.controllers.first()?.events;
+    let [setpoint, load] = [events.first()?, events.get(1)?].map(|stretch| stretch.metrics.iae);
+    (setpoint.is_finite() && load.is_finite()).then_some(Outcome {
+        design: made,
+        iae_setpoint: setpoint,
+        iae_load: load,
+    })
+}
