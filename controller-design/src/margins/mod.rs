@@ -18,12 +18,15 @@
 //! ```
 
 mod continuous;
+pub mod discrete;
 mod measure;
 mod paths;
 mod scan;
 
 pub use continuous::ContinuousLoop;
 pub(crate) use paths::{Paths, lead, split_zeros};
+pub use discrete::{DiscreteLaw, DiscreteLoop, LoopResponse, NoiseGains};
+pub(crate) use paths::Paths;
 
 /// The distances of a stable loop from instability; frequencies in rad/s.
 ///

@@ -1,0 +1,208 @@
+//! The laws that run, as frequency responses: nothing but their own coefficients is read.
+
+use std::vec::Vec;
+
+use controller_core::{
+    AnyCompensator, Coefficients, CompensatorConfig, ConfigErrors, Pid, PidCoefficients, PidConfig,
+};
+
+use crate::hold::{delay_by, minus_one};
+use crate::model::Complex;
+
+/// A controller as it runs: a PID and, if there is one, a disturbance compensator, both in double precision.
+///
+/// ```text
+/// v = -C(z)*y + u_f,   u_f = C_u(z)*u + C_y(z)*y
+/// ```
+///
+/// for a constant set-point and no limit in force. The responses are those of the difference equations in
+/// [`Pid`] and [`Compensator`](controller_core::Compensator), term by term.
+///
+/// Cost of a response: one division per lag.
+///
+/// ```
+/// use controller_core::PidConfig;
+/// use controller_design::margins::DiscreteLaw;
+/// let law = DiscreteLaw::new(&PidConfig { kp: 2.0, ki: 0.5, ..PidConfig::default() }, 0.1).expect("valid");
+/// // At the Nyquist frequency z = -1: kp + ki*ts*z/(z-1).
+/// assert!((law.pid(core::f64::consts::PI).re - 2.025).abs() < 1e-15);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct DiscreteLaw {
+    pid: PidCoefficients<f64>,
+    compensator: Option<AnyCompensator<f64, Vec<f64>>>,
+    ts: f64,
+}
+
+impl DiscreteLaw {
+    /// A PID alone, discretised for the sampling period `ts` \[s\].
+    ///
+    /// # Errors
+    /// Every fault of [`PidConfig::validate`].
+    pub fn new(pid: &PidConfig, ts: f64) -> Result<Self, ConfigErrors> {
+        Ok(Self { pid: Pid::<f64>::new(pid, ts)?.coefficients(), compensator: None, ts })
+    }
+
+    /// A PID with a disturbance compensator, whose configuration carries the loop's latency.
+    ///
+    /// # Errors
+    /// Every fault of the two configurations, that of contradicting signs included.
+    ///
+    /// ```
+    /// use controller_core::{EstimatorConfig, PidConfig};
+    /// use controller_design::margins::DiscreteLaw;
+    /// let pid = PidConfig { kp: 2.35, ki: 1.88, kd: 0.48, tf: 0.119, ..PidConfig::default() };
+    /// let model = EstimatorConfig { gain: 1.0, a1: 1.2, a2: 0.2, dead_time: 0.2, kfd: 0.69, tfd: 0.06 };
+    /// assert!(DiscreteLaw::with_compensator(&pid, &model.to_compensator(0.0), 0.01).is_ok());
+    /// ```
+    pub fn with_compensator(
+        pid: &PidConfig,
+        compensator: &CompensatorConfig,
+        ts: f64,
+    ) -> Result<Self, ConfigErrors> {
+        let capacity = AnyCompensator::<f64, Vec<f64>>::needed_capacity(compensator, ts).saturating_add(2);
+        // Both are built before either fails, so that all faults show at once.
+        let built = (Pid::<f64>::new(pid, ts), AnyCompensator::new(compensator, ts, capacity));
+        let (law, compensation) = match built {
+            (Ok(law), Ok(compensation)) => (law, compensation),
+            (Err(first), Err(second)) => return Err(first.and(&second)),
+            (Err(faults), _) | (_, Err(faults)) => return Err(faults),
+        };
+        compensator.check_sign(pid)?;
+        Ok(Self { pid: law.coefficients(), compensator: Some(compensation), ts })
+    }
+
+    /// The sampling period \[s\].
+    #[must_use]
+    pub fn ts(&self) -> f64 {
+        self.ts
+    }
+
+    /// Whether there is an integral term.
+    #[must_use]
+    pub fn integrates(&self) -> bool {
+        self.pid.ki_now != 0.0 || self.pid.ki_before != 0.0
+    }
+
+    /// `C(exp(j*theta))` of the PID alone, from `-y` to `u`; `theta = w*ts` in rad, above 0 and up to pi.
+    #[must_use]
+    pub fn pid(&self, theta: f64) -> Complex {
+        let z_minus_one = minus_one(theta);
+        let c = &self.pid;
+        let tap = Tap::new(c.g, z_minus_one);
+        let filtered = tap.value * c.p_y + tap.difference * c.h_y;
+        if !self.integrates() {
+            return filtered;
+        }
+        let z = z_minus_one + Complex::ONE;
+        filtered + (z * c.ki_now + Complex::real(c.ki_before)) / z_minus_one
+    }
+
+    /// `(1 - C_u, C_y)` of the compensator at `theta = w*ts`, `(1, 0)` without one. `1 - C_u` is put together without the
+    /// difference: an observer's vanishes at low frequencies.
+    #[must_use]
+    pub fn compensator(&self, theta: f64) -> (Complex, Complex) {
+        let Some(law) = &self.compensator else { return (Complex::ONE, Complex::ZERO) };
+        let law = law.coefficients();
+        let z_minus_one = minus_one(theta);
+        let tap = |g: f64| Tap::new(g, z_minus_one);
+        let shared = shared_loss(&law, tap);
+        let from_u = u_loss(&law, tap);
+        let samples = law.delay.saturating_add(1);
+        let late = delay_by(theta, samples);
+        // 1 - late = -(exp(-j*n*theta) - 1), small angles exactly.
+        let turned = theta * samples as f64;
+        let delay_loss = if turned < 1.0 { -minus_one(-turned) } else { Complex::ONE - late };
+        let path_loss = delay_loss + late * (from_u + (Complex::ONE - from_u) * shared);
+        let one_minus_cu = Complex::real(1.0 - law.gain) + path_loss * law.gain;
+        let from_y = y_path(&law, tap) * (Complex::ONE - shared);
+        (one_minus_cu, from_y * (-law.gain * law.inv_gain))
+    }
+
+    /// The jump of the output in the same sample per unit of a jump of `-y` \[u/y\]: `C - C_y` for `z` to infinity.
+    #[must_use]
+    pub fn step_gain(&self) -> f64 {
+        let pid = self.pid.h_y + self.pid.ki_now;
+        self.compensator.as_ref().map_or(pid, |law| {
+            let law = law.coefficients();
+            let tap = |_: f64| Tap { value: Complex::ZERO, difference: Complex::ONE };
+            let shared: f64 = law.e_gain.iter().map(|g| 0.5 * g).product();
+            pid + law.gain * law.inv_gain * y_path(&law, tap).re * shared
+        })
+    }
+
+    /// Gains of all lags and the samples of delay, for the choice of frequencies.
+    pub(super) fn lags(&self) -> (Vec<f64>, usize) {
+        let mut gains = Vec::from([self.pid.g]);
+        let mut delay = 0;
+        if let Some(law) = &self.compensator {
+            let law = law.coefficients();
+            gains.extend(law.g);
+            gains.extend(law.e_gain);
+            delay = law.delay.saturating_add(1);
+        }
+        (gains, delay)
+    }
+
+    /// Whether there is a compensator.
+    #[must_use]
+    pub fn compensates(&self) -> bool {
+        self.compensator.is_some()
+    }
+}
+
+/// State of a lag and difference of its input from it, per unit of its input.
+#[derive(Clone, Copy)]
+struct Tap {
+    value: Complex,
+    difference: Complex,
+}
+
+impl Tap {
+    fn new(g: f64, z_minus_one: Complex) -> Self {
+        let pole = z_minus_one + Complex::real(g);
+        Self { value: Complex::real(g) / pole, difference: z_minus_one / pole }
+    }
+}
+
+/// One minus the response of the shared lags, `value + g/2*difference` each.
+fn shared_loss(law: &Coefficients<'_, f64>, tap: impl Fn(f64) -> Tap) -> Complex {
+    law.e_gain.iter().fold(Complex::ZERO, |loss, &g| {
+        let own = tap(g).difference * (1.0 - 0.5 * g);
+        loss + (Complex::ONE - loss) * own
+    })
+}
+
+/// One minus the response of the `u` chain: `sum (1 - E_j)*(w_(j-1) - w_j)`.
+fn u_loss(law: &Coefficients<'_, f64>, tap: impl Fn(f64) -> Tap) -> Complex {
+    let mut x = Complex::ONE;
+    let mut loss = Complex::ZERO;
+    for (&g, &lead) in law.g.iter().zip(law.u_lead) {
+        let lag = tap(g);
+        loss = loss + x * lag.difference * (1.0 - lead);
+        x = x * lag.value;
+    }
+    loss
+}
+
+/// The response of the `y` sections.
+fn y_path(law: &Coefficients<'_, f64>, tap: impl Fn(f64) -> Tap) -> Complex {
+    let mut x = Complex::ONE;
+    let leads = law.y_feed.chunks(2).zip(law.y_lead.chunks(2));
+    for ((g, (feed, lead)), dc) in law.g.chunks(2).zip(leads).zip(law.y_dc.chunks(2)) {
+        x = match (g, feed, lead, dc) {
+            (&[g1, g2], &[feed, _], &[e1, e2], &[_, dc]) => {
+                let (one, two) = (tap(g1), tap(g2));
+                let between = one.value + one.difference * feed;
+                x * ((two.value * dc + two.difference * e2) * between + one.difference * e1)
+            }
+            (&[g], _, &[lead], &[dc]) => {
+                let lag = tap(g);
+                x * (lag.value * dc + lag.difference * lead)
+            }
+            // The lists have one length.
+            _ => x,
+        };
+    }
+    x
+}
