@@ -2,6 +2,7 @@
 
 use controller_core::{EstimatorConfig, PidConfig};
 
+use super::checks::positive;
 use super::momi::Momi;
 use super::noise_limit::{high_frequency, kden};
 use super::reduction::Reduced;
@@ -115,14 +116,6 @@ impl DeMomi {
             }
         };
         Self { pid, estimator, model, warnings }
-    }
-}
-
-fn positive(parameter: &'static str, value: f64) -> Result<(), Refusal> {
-    if value > 0.0 && value.is_finite() {
-        Ok(())
-    } else {
-        Err(Refusal::OutOfRange { parameter, value, min: 0.0, max: f64::MAX })
     }
 }
 

@@ -1,5 +1,6 @@
 //! What MOMI and DRMO share: areas without units, and the gains of eq. (6).
 
+use super::checks;
 use crate::Refusal;
 use crate::areas::Areas;
 use crate::double::{Double, exponent};
@@ -27,9 +28,7 @@ const NOT_SELF_REGULATING: Refusal = Refusal::Plant {
 impl Normalised {
     /// `tf` in seconds, 0 or more.
     pub(super) fn new(areas: &Areas, tf: f64) -> Result<Self, Refusal> {
-        if !(tf >= 0.0 && tf.is_finite()) {
-            return Err(Refusal::OutOfRange { parameter: "tf", value: tf, min: 0.0, max: f64::MAX });
-        }
+        checks::not_negative("tf", tf)?;
         let values = areas.values();
         if !values.iter().all(|a| a.is_finite()) {
             return Err(Refusal::Plant {
@@ -37,12 +36,7 @@ impl Normalised {
                 help: "check the model or the record they come from",
             });
         }
-        if values[0] == 0.0 {
-            return Err(Refusal::Plant {
-                must: "have a gain other than 0",
-                help: "check the gain of the model or the size of the recorded change",
-            });
-        }
+        checks::gain(values[0])?;
         if values[1] * values[0].signum() <= 0.0 {
             return Err(NOT_SELF_REGULATING);
         }

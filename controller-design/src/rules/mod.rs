@@ -11,9 +11,22 @@
 //!
 //! * [`pi_ms`]: PI of the largest integral gain within a maximum sensitivity.
 //! * [`observer`]: the disturbance observer beside a PI.
+//! From a first-order, second-order or integrating model with dead time:
+//!
+//! * [`fits`]: fits to the PI with the least IAE after a load step.
+//! * [`ah`]: the kappa-tau PID; `inflexion` (with `std`) gives its apparent dead time.
+//! * [`amigo`], [`simc`]: the rules that are most used today.
+//! * [`adrc`]: second-order active disturbance rejection.
 
+pub mod adrc;
+pub mod ah;
+pub mod amigo;
+mod checks;
 pub mod de_momi;
 pub mod drmo;
+pub mod fits;
+#[cfg(feature = "std")]
+pub mod inflexion;
 mod magnitude_optimum;
 pub mod momi;
 pub mod noise_limit;
@@ -27,3 +40,4 @@ pub mod reduction;
 pub use observer::ObserverDesign;
 #[cfg(feature = "std")]
 pub use pi_ms::PiMs;
+pub mod simc;

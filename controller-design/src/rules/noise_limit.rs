@@ -8,7 +8,7 @@ use core::f64::consts::FRAC_PI_2;
 use controller_core::PidConfig;
 
 use super::reduction::Reduced;
-use super::{drmo, momi};
+use super::{checks, drmo, momi};
 use crate::areas::Areas;
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
@@ -100,11 +100,8 @@ pub(super) fn shortest_filter(
     kpidn: f64,
     ts: f64,
 ) -> Result<(PidConfig, Warnings), Refusal> {
-    for (parameter, value) in [("kpidn", kpidn), ("ts", ts)] {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(Refusal::OutOfRange { parameter, value, min: 0.0, max: f64::MAX });
-        }
-    }
+    checks::positive("kpidn", kpidn)?;
+    checks::positive("ts", ts)?;
     let found = Search { areas, rule, ts, limit: kpidn }.run();
     let Some(tf) = found.tf else {
         if found.least.is_finite() {
