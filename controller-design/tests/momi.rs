@@ -206,3 +206,21 @@ fn the_shortest_filter_is_one_sample() {
     let plain = Momi::new(&areas, 0.0).unwrap();
     assert!(plain.warnings.iter().any(|w| w.to_string().contains("cannot be run")));
 }
+
+/// A plant that is nearly all dead time leaves the gain of the derivative in the loop: with a short filter it is unstable.
+#[test]
+fn loops_without_roll_off_are_told() {
+    let told = |plant: &str, tf: f64| {
+        let momi = Momi::new(&parse(plant).unwrap().areas6().unwrap(), tf).unwrap();
+        momi.warnings.iter().any(|w| w.to_string().starts_with("gain"))
+    };
+    assert!(told("exp(-s)/(1+0.001*s)", 0.05));
+    assert!(told("-7*exp(-1e-6*s)", 5e-8));
+    assert!(!told("exp(-s)/(1+0.001*s)", 0.5));
+    for row in rows() {
+        let expected = ["delay-only-almost", "first-order-long-delay"].contains(&row.name());
+        if row.get("momi_kp").is_some() {
+            assert_eq!(told(&row.plant().to_string(), row.number("tf")), expected, "{}", row.name());
+        }
+    }
+}

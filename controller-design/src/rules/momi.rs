@@ -4,6 +4,7 @@ use controller_core::PidConfig;
 
 use super::magnitude_optimum::{Gains, Normalised, WRONG_SIGN};
 use super::noise_limit::{self, PidRule};
+use super::reduction::Reduced;
 use crate::areas::Areas;
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
@@ -89,9 +90,36 @@ pub(super) fn warn_about(pid: &PidConfig, areas: &Areas, warnings: &mut Warnings
         let text = "a derivative without a filter cannot be run: choose tf of at least ts";
         warn(warnings, Warning::Text { about: "tf", text });
     }
+    let gain = gain_beyond_dead_time(pid, areas);
+    if gain > LARGEST_GAIN {
+        let text = "this much loop gain is left beyond the dead time, 1 is unstable: a longer tf, or a PI";
+        warn(warnings, Warning::Value { about: "gain", value: gain, text });
+    }
     let longest = areas.of(1) / areas.of(0);
     if pid.tf > longest {
         let text = "the filter is slower than the plant: allow more noise, or use a PI";
         warn(warnings, Warning::OutsideValidity { about: "tf", value: pid.tf, min: 0.0, max: longest, text });
     }
+}
+
+/// Loop gain beyond the dead time above which `Ms` is 3 by this alone.
+const LARGEST_GAIN: f64 = 2.0 / 3.0;
+
+/// The largest loop gain at frequencies from `pi/dead_time`, where the phase is beyond -180 degrees and turns fast; 0
+/// without dead time or without a model. Of the reduced model: it is large only for plants that are mostly dead time.
+fn gain_beyond_dead_time(pid: &PidConfig, areas: &Areas) -> f64 {
+    let Ok(model) = Reduced::new(areas) else { return 0.0 };
+    if model.fallback || model.dead_time <= 0.0 {
+        return 0.0;
+    }
+    let mut largest = 0.0_f64;
+    let mut w = core::f64::consts::PI / model.dead_time;
+    // Seven decades: further out either the lags or the filter have brought the gain down for good.
+    for _ in 0..40 {
+        let controller = libm::hypot(pid.ki / w - pid.kd * w, pid.kp) / libm::hypot(1.0, pid.tf * w);
+        let plant = model.gain / libm::hypot(1.0 - model.a2 * w * w, model.a1 * w);
+        largest = largest.max(controller * plant.abs());
+        w *= 1.5;
+    }
+    largest
 }
