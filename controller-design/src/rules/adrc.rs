@@ -33,7 +33,7 @@ pub struct AdrcDesign {
 
 /// Bandwidth of the observer over that of the controller, as in Table 7.
 const OBSERVER: f64 = 4.0;
-/// `omega_c` times the settling time, as in Table 7 with settling times of 1 s and 25 s.
+/// `omega_c` times the settling time: then `(1 + x)*exp(-x)`, what a double pole has left of a step, is 0.05 %.
 const SETTLING: f64 = 10.0;
 
 impl AdrcDesign {
@@ -77,11 +77,12 @@ impl AdrcDesign {
         }
     }
 
-    /// The parameters for a settling time in seconds: `omega_c = 10/settling_time`, `omega_o = 4*omega_c`.
+    /// The parameters for a settling time in seconds: `omega_c = 10/settling_time`, `omega_o = 4*omega_c`. With an ideal
+    /// observer the set-point response is then within 0.05 % of its end.
     ///
     /// ```
     /// use controller_design::rules::adrc::AdrcDesign;
-    /// // Table 7, second row
+    /// // Table 7, second row: omega_c = 0.4
     /// let design = AdrcDesign::for_settling_time(3.0, 25.0).expect("a design");
     /// assert!((design.kp - 0.16).abs() < 1e-15 && (design.beta2 - 7.68).abs() < 1e-14);
     /// ```

@@ -8,7 +8,8 @@ use crate::{Refusal, Warnings};
 /// The AMIGO rules of Åström & Hägglund (Journal of Process Control 14, 2004, and "Advanced PID Control", 2006): PI and
 /// PID with `Ms` and `Mt` near 1.4, for plants whose step response rises without swinging.
 ///
-/// Set-point weight as they recommend: `b = 0` where the dead time is at most half of the total, and 1 above. `c = 0`.
+/// Set-point weight as they recommend for the PID, taken for the PI as well: `b = 0` where the dead time is at most half
+/// of the total, and 1 above. `c = 0`.
 /// The rules say nothing about the filter: here `tf = td/10` for the PID, 0 for the PI. They are cautious for
 /// plants with little dead time.
 #[derive(Debug, Clone, PartialEq)]

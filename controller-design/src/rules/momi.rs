@@ -115,11 +115,11 @@ fn gain_beyond_dead_time(pid: &PidConfig, areas: &Areas) -> f64 {
     let mut largest = 0.0_f64;
     let mut w = core::f64::consts::PI / model.dead_time;
     // Seven decades: further out either the lags or the filter have brought the gain down for good.
-    for _ in 0..40 {
+    for _ in 0..24 {
         let controller = libm::hypot(pid.ki / w - pid.kd * w, pid.kp) / libm::hypot(1.0, pid.tf * w);
         let plant = model.gain / libm::hypot(1.0 - model.a2 * w * w, model.a1 * w);
         largest = largest.max(controller * plant.abs());
-        w *= 1.5;
+        w *= 2.0;
     }
     largest
 }

@@ -200,16 +200,37 @@ impl Search<'_> {
         found
     }
 
-    /// The shortest filter within the limit between one that is not and one that is.
-    fn crossing(&self, mut out: f64, mut within: f64) -> f64 {
-        for _ in 0..80 {
-            let middle = out * libm::sqrt(within / out);
-            if !(middle > out && middle < within) {
+    /// The shortest filter within the limit between one that is not and one that is: false position on logarithmic
+    /// scales (Illinois), halving in every third step.
+    fn crossing(&self, out: f64, within: f64) -> f64 {
+        let excess = |tf: f64| libm::log(self.gain(tf) / self.limit);
+        let (mut out, mut within) = ((out, excess(out)), (within, excess(within)));
+        // Of each end; halved when the other end has moved twice in a row.
+        let mut weights = (1.0, 1.0);
+        let mut last_moved_out = None;
+        for step in 0..200 {
+            if within.0 <= out.0 * (1.0 + 4.0 * f64::EPSILON) || within.1 >= -2.0 * f64::EPSILON {
                 break;
             }
-            if self.gain(middle) <= self.limit { within = middle } else { out = middle }
+            let (up, down) = (weights.0 * out.1, weights.1 * within.1);
+            let part = if step % 3 == 2 { 0.5 } else { up / (up - down) };
+            let mut tf = out.0 * libm::exp(part * libm::log(within.0 / out.0));
+            if !(out.0 < tf && tf < within.0) {
+                tf = out.0 * libm::sqrt(within.0 / out.0);
+            }
+            let here = (tf, excess(tf));
+            let moves_out = here.1.is_nan() || here.1 > 0.0;
+            let twice = last_moved_out == Some(moves_out);
+            if moves_out {
+                out = here;
+                weights = (1.0, if twice { 0.5 * weights.1 } else { 1.0 });
+            } else {
+                within = here;
+                weights = (if twice { 0.5 * weights.0 } else { 1.0 }, 1.0);
+            }
+            last_moved_out = Some(moves_out);
         }
-        within
+        within.0
     }
 
     /// The least gain between two filters: golden section on a logarithmic scale.
