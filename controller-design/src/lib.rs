@@ -12,6 +12,7 @@
 //!
 //! With it (the default):
 //!
+//! * [`assessment`]: whether a PI loop is tuned for loads, from an experiment of two minutes.
 //! * [`model`]: plants written as expressions, such as `1.98*exp(-3.2*s)/(1+80.3*s)`, their polynomials,
 //!   poles, zeros and factors.
 //! * [`batch134`]: the test processes of Tena et al. 2022.
@@ -36,6 +37,7 @@ mod frequency;
 pub mod hold;
 #[cfg(feature = "std")]
 pub mod margins;
+pub mod assessment;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod refusal;
