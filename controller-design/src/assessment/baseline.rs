@@ -68,7 +68,7 @@ impl Baseline {
             return Err(Reason::NotSteady);
         }
         let away = (self.pv - mean(&record.sp[range.clone()])).abs();
-        if away > AWAY * p1 + 4.0 * sigma / libm::sqrt(range.len() as f64) {
+        if record.has_setpoint && away > AWAY * p1 + 4.0 * sigma / libm::sqrt(range.len() as f64) {
             return Err(Reason::NotAtSetpoint(away / p1));
         }
         Ok(())

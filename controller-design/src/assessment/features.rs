@@ -36,6 +36,8 @@ const GAP: f64 = 0.25;
 /// Largest deviation at the return to automatic, in first peaks, and from where on the peak is too high by some percent.
 const LATE: f64 = 0.2;
 const SOON: f64 = 0.05;
+/// A response this much smaller than what was there before is none: squares would overflow.
+const LARGEST: f64 = 1e100;
 /// A swing counts from this share of the largest one.
 const SWING: f64 = 0.3;
 /// A measurement is settled within this share of the first peak; the output is back within this share of the step.
@@ -66,6 +68,11 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
     let view = View::new(record, &parts, rough.pv).ok_or(Reason::NoResponse)?;
     let (first, oscillates) = view.first_peak();
     let t1 = first.t - t0;
+    if t1 <= 0.0 {
+        let is_late = view.z[parts.end - 1].abs() > 0.5;
+        let short = parts.ended_by.unwrap_or(Reason::RecordShort(1.0));
+        return Err(if is_late { short } else { Reason::NoResponse });
+    }
     let baseline = Baseline::new(record, &parts, 2.0 * t1)?;
     let view = View::new(record, &parts, baseline.pv).ok_or(Reason::NoResponse)?;
     let half_width = HALF_WIDTH * t1;
@@ -91,7 +98,13 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
     let white = sigma * libm::sqrt(view.signal().fit(t_peak, half_width).variance);
     let mut features = Features { p1, t1, dip: None, t_ratio: None, r3: None, sigma };
     out.features = Some(features);
-    if !(t1 > 0.0 && p1 > RISE_NOISE * white) {
+    let last = record.t[parts.end - 1];
+    let still = view.signal().fit(last, half_width).value.abs() * view.scale;
+    if still > (2.0 * p1).max(RISE_NOISE * white) && !oscillates {
+        // It is on its way to its first peak.
+        return Err(parts.ended_by.unwrap_or(Reason::RecordShort(1.0)));
+    }
+    if t1 <= 0.0 || p1 <= RISE_NOISE * white {
         return Err(Reason::NoResponse);
     }
     if RISE_NOISE * white > MOST_NOISE * p1 {
@@ -107,12 +120,13 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
     if RISE_NOISE * ss > MOST_NOISE * p1 {
         return Err(Reason::Noise(RISE_NOISE * ss / p1));
     }
-    let auto = check_auto(&parts, &view, record, (y1, half_width), out)?;
+    let auto = parts.auto.ok_or(Reason::NeverAuto)?;
     check_samples(record, &parts, (t0, t1), oscillates, out)?;
+    check_auto(auto, &view, record, (y1, half_width), out)?;
 
     let level = |y: f64| y * first.sign / y1;
     let least = RISE.max(RISE_NOISE * ss / p1);
-    let dip = find_dip(&curve, top, t0 + DIP_WITHIN * t1, |y| level(y), least);
+    let dip = find_dip(&curve, top, t0 + DIP_WITHIN * t1, level, least);
     let tail = top..curve.t.len();
     let lowest = extreme(&curve, tail, |y| -level(y)).map_or(0.0, |k| level(curve.y[k]));
     let dip = dip.map(|k| {
@@ -156,7 +170,10 @@ impl<'a> View<'a> {
         if scale == 0.0 || end - step < 3 {
             return None;
         }
-        let z = record.pv.iter().map(|pv| (pv - level) / scale).collect();
+        let z: Vec<f64> = record.pv.iter().map(|pv| (pv - level) / scale).collect();
+        if z.iter().any(|z| z.abs() > LARGEST) {
+            return None;
+        }
         Some(Self { record, z, step, end, level, scale })
     }
 
@@ -240,13 +257,12 @@ fn rms(list: impl Iterator<Item = f64>) -> f64 {
 
 /// Whether the controller took over before the measurement went away.
 fn check_auto(
-    parts: &Parts,
+    auto: usize,
     view: &View<'_>,
     record: &Record,
     (y1, half_width): (f64, f64),
     out: &mut Assessment,
-) -> Result<usize, Reason> {
-    let auto = parts.auto.filter(|auto| *auto < parts.end).ok_or(Reason::NeverAuto)?;
+) -> Result<(), Reason> {
     let gone = view.signal().fit(record.t[auto], half_width).value.abs() / y1;
     if gone > LATE {
         return Err(Reason::AutoTooLate(gone));
@@ -255,7 +271,7 @@ fn check_auto(
         let text = "of the first peak were gone at the return to automatic: the peak is somewhat too high";
         let _ = out.warnings.push(Warning::Value { about: "share", value: gone, text });
     }
-    Ok(auto)
+    Ok(())
 }
 
 /// Whether there are enough samples where they are needed.
@@ -267,7 +283,7 @@ fn check_samples(
     out: &mut Assessment,
 ) -> Result<(), Reason> {
     let until = |t: f64| record.t.partition_point(|&own| own <= t).min(parts.end);
-    let samples = until(t0 + t1) - parts.step;
+    let samples = until(t0 + t1) - parts.step - 1;
     if samples < FEWEST {
         return Err(Reason::CoarseSampling(samples));
     }
@@ -275,9 +291,9 @@ fn check_samples(
         let text = "so many until the first peak: peaks and times are rough";
         let _ = out.warnings.push(Warning::Value { about: "samples", value: samples as f64, text });
     }
-    let last = record.t[parts.end - 1] - t0;
-    if last < SHORTEST * t1 && !oscillates {
-        return Err(parts.ended_by.unwrap_or(Reason::RecordShort(last / t1)));
+    let length = record.t[parts.end - 1] - t0;
+    if length < SHORTEST * t1 && !oscillates {
+        return Err(parts.ended_by.unwrap_or(Reason::RecordShort(length / t1)));
     }
     let steps = record.t[parts.step - 1..until(t0 + 3.0 * t1)].windows(2);
     let gap = steps.fold(0.0_f64, |gap, t| gap.max(t[1] - t[0]));

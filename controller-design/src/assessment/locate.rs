@@ -35,6 +35,10 @@ impl Record {
     /// Divides the record.
     pub(super) fn parts(&self) -> Result<Parts, Reason> {
         let step = self.find_step()?;
+        let begin = (1..=step).rev().find(|&k| self.sp[k] != self.sp[k - 1]).unwrap_or(0);
+        if begin == step {
+            return Err(Reason::SetpointMoved);
+        }
         let auto = match self.auto_at {
             Some(auto) if auto > step && auto < self.len() => Some(auto),
             Some(_) => None,
@@ -58,7 +62,6 @@ impl Record {
                 break;
             }
         }
-        let begin = (1..=step).rev().find(|&k| self.sp[k] != self.sp[k - 1]).unwrap_or(0);
         Ok(Parts { step, auto, end, ended_by, begin })
     }
 
@@ -88,8 +91,11 @@ impl Record {
             let first = range.find(stands_out)?;
             range.filter(stands_out).fold(Some(first), larger)
         };
-        // Of the first samples too little is known to tell.
-        among(FEWEST..self.len()).or_else(|| among(1..FEWEST.min(self.len()))).ok_or(Reason::NoStep)
+        // Of the first samples too little is known to tell, unless it is clear.
+        match (among(1..FEWEST.min(self.len())), among(FEWEST..self.len())) {
+            (Some(early), Some(late)) if self.jump(early) <= JUMP * self.jump(late) => Ok(late),
+            (early, late) => early.or(late).ok_or(Reason::NoStep),
+        }
     }
 
     fn find_auto(&self, step: usize) -> Option<usize> {

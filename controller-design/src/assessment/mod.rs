@@ -60,7 +60,7 @@ pub use reason::Reason;
 pub struct Experiment<'a> {
     /// Time \[s\].
     pub t: &'a [f64],
-    /// Set-point \[y\].
+    /// Set-point \[y\]; empty when it was not recorded.
     pub setpoint: &'a [f64],
     /// Measurement, the output of the process \[y\].
     pub output: &'a [f64],

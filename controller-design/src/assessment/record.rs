@@ -21,6 +21,8 @@ pub(super) struct Record {
     pub(super) co: Vec<f64>,
     pub(super) step_at: Option<usize>,
     pub(super) auto_at: Option<usize>,
+    /// Without one, `sp` is 0.
+    pub(super) has_setpoint: bool,
     left_out: usize,
 }
 
@@ -33,7 +35,8 @@ impl Record {
                 help: "record the loop from before the step of the output until it has settled",
             });
         }
-        if [e.setpoint.len(), e.output.len(), e.input.len()] != [n; 3] {
+        let has_setpoint = !e.setpoint.is_empty();
+        if (has_setpoint && e.setpoint.len() != n) || [e.output.len(), e.input.len()] != [n; 2] {
             return Err(Refusal::Data {
                 why: "time, set-point, measurement and output have different lengths",
                 help: "give one value of each for every sample",
@@ -46,6 +49,7 @@ impl Record {
             co: Vec::with_capacity(n),
             step_at: None,
             auto_at: None,
+            has_setpoint,
             left_out: 0,
         };
         for k in 0..n {
@@ -58,7 +62,7 @@ impl Record {
             };
             asked(e.step_at, &mut record.step_at);
             asked(e.auto_at, &mut record.auto_at);
-            record.add([e.t[k], e.setpoint[k], e.output[k], e.input[k]])?;
+            record.add([e.t[k], e.setpoint.get(k).copied().unwrap_or(0.0), e.output[k], e.input[k]])?;
         }
         let index = |parameter, at: Option<usize>| match at {
             Some(at) if at >= n => {
@@ -129,6 +133,7 @@ impl Record {
             co: of(&self.co),
             step_at: None,
             auto_at: None,
+            has_setpoint: self.has_setpoint,
             left_out: 0,
         };
         (record, Parts { begin: 0, step: parts.step - parts.begin, auto, end: range.len(), ..parts })
@@ -139,6 +144,10 @@ impl Record {
     }
 
     pub(super) fn warn(&self, warnings: &mut Warnings) {
+        if !self.has_setpoint {
+            let text = "not recorded; that the loop was at it and that it stood still is not checked";
+            let _ = warnings.push(Warning::Text { about: "setpoint", text });
+        }
         if self.left_out > 0 {
             // A full list of warnings has said enough.
             let _ = warnings.push(Warning::Value {

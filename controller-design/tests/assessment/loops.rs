@@ -94,6 +94,9 @@ pub(crate) const OPTIMA: [Optimum; 9] = [
     ),
 ];
 
+/// Steps of the continuous simulation in a sample of the record.
+const FINER: usize = 5;
+
 /// An experiment that was simulated.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Recording {
@@ -158,10 +161,10 @@ impl Plan {
         out
     }
 
-    /// A continuous PI, by the trapezoidal rule with ten times the samples; every tenth is recorded. The load is exact
+    /// A continuous PI, by the trapezoidal rule with five times the samples; every fifth is recorded. The load is exact
     /// because it is held, what is left is of the second order in the step.
     pub(crate) fn continuous(&self) -> Recording {
-        let fine = 10 * self.delay;
+        let fine = FINER * self.delay;
         let h = 1.0 / fine as f64;
         let (a, b) = self.hold_equivalent(h);
         let (start, count) = (self.rest * fine, (self.rest + self.length) * fine);
@@ -170,7 +173,7 @@ impl Plan {
         for k in 0..count {
             u.push(integral - self.kp * y);
             let load = |k: usize| if k >= start { 1.0 } else { 0.0 };
-            if k % 10 == 0 {
+            if k % FINER == 0 {
                 out.push(k as f64 * h, y, u[k] + load(k));
             }
             let late = |k: usize| k.checked_sub(fine).map_or(0.0, |k| u[k]);
