@@ -30,7 +30,8 @@
 //!     u.push(i - kp * y);
 //!     y += (u[k] - y) * ts;
 //! }
-//! let experiment = Experiment::new(&t, &vec![0.0; 2000], &pv, &co);
+//! let setpoint = [0.0; 2000];
+//! let experiment = Experiment::new(&t, &setpoint, &pv, &co);
 //! let assessment = assess(&experiment, &AssessOptions::default()).expect("a record");
 //! assert_eq!(assessment.verdict, Verdict::NearOptimal);
 //! assert!((assessment.features.unwrap().t1 - 2.32).abs() < 0.05);

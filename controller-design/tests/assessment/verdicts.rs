@@ -35,7 +35,7 @@ fn continuous_loops_are_told_apart() {
     let (mut good, mut accepted) = (0, 0);
     for optimum in &OPTIMA {
         for (kp, ti) in grid(12, 14) {
-            let recording = Plan::of(optimum).detuned(kp, ti).continuous();
+            let recording = Plan { length: 40, ..Plan::of(optimum) }.detuned(kp, ti).continuous();
             let loss = recording.iae / optimum.iae - 1.0;
             let result = assessed(&recording);
             let what = || format!("r {}, kp x {kp:.2}, ti x {ti:.2}, loss {loss:.3}: {result:?}", optimum.r);
