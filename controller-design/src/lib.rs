@@ -20,6 +20,7 @@
 //! * [`design`]: one door to all tuning rules, with the margins and noise gains of what they give.
 //! * [`hold`]: plants as a sampled controller sees them, exactly.
 //! * [`response`]: load responses of continuous loops with dead time, and their indices.
+//! * [`identification`]: areas and a model from a recorded change between two steady states.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
@@ -38,6 +39,7 @@ pub mod hold;
 #[cfg(feature = "std")]
 pub mod margins;
 pub mod assessment;
+pub mod identification;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod refusal;

@@ -1,0 +1,437 @@
+//! The result, and the way to it.
+
+use super::estimate::{self, Estimate};
+use super::fit::Fitted;
+use super::gains;
+use super::moments::Six;
+use super::record::{Record, mean, tail_rows};
+use super::structures::{self, Fits};
+use super::{IdentifyOptions, Recording};
+use crate::areas::Areas;
+use crate::{Refusal, Warning, Warnings};
+
+/// Largest spread of `K_P` with which raw areas are used, and the one with which they are whatever the fit says.
+const MOST_SPREAD: f64 = 0.1;
+const GOOD_SPREAD: f64 = 0.002;
+/// Largest spread of `K_P` with which anything is concluded.
+const MOST_SPREAD_OF_ALL: f64 = 1.0;
+/// Share of the change that may still be to come at the end, and the share from which that is said.
+const MOST_UNSETTLED: f64 = 0.05;
+const UNSETTLED: f64 = 0.01;
+
+/// Which areas were chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chosen {
+    /// The raw areas, integrals of the record.
+    Areas,
+    /// The areas of the fitted model.
+    Fit,
+}
+
+impl Chosen {
+    /// `areas` or `fit`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Areas => "areas",
+            Self::Fit => "fit",
+        }
+    }
+}
+
+/// `gain*exp(-dead_time*s)/(1 + a1*s + a2*s^2)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SecondOrder {
+    /// Change of `y` per change of `u`.
+    pub gain: f64,
+    /// In s.
+    pub a1: f64,
+    /// In s^2.
+    pub a2: f64,
+    /// In s.
+    pub dead_time: f64,
+}
+
+/// The fit that explains the record best: `offset + gain*(1 + b1*s)*exp(-dead_time*s)/(1 + a[0]*s + a[1]*s^2 + ..)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fit {
+    /// Number of lags, 2 to 4.
+    pub order: usize,
+    /// The output before the change.
+    pub offset: f64,
+    /// Change of `y` per change of `u`.
+    pub gain: f64,
+    /// Time of the zero in s, 0 when there is none.
+    pub b1: f64,
+    /// Coefficients of `s, s^2, s^3, s^4`.
+    pub a: [f64; 4],
+    /// In s.
+    pub dead_time: f64,
+    /// Root mean square of the residuals, in the unit of `y`.
+    pub rms: f64,
+    /// Its areas.
+    pub areas: Areas,
+    /// Half widths of the 90 % intervals of its areas.
+    pub area_interval: [f64; 6],
+    /// Standard deviation over value of the `K_P` that follows from it.
+    pub kp_spread: f64,
+}
+
+/// What a recording says about the process.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identified {
+    /// The chosen areas, `A_k` in the unit of `y/u` times s^k.
+    pub areas: Areas,
+    /// Half widths of their 90 % intervals.
+    pub area_interval: [f64; 6],
+    /// The areas straight from the record.
+    pub raw_areas: Areas,
+    /// Half widths of the 90 % intervals of the raw areas.
+    pub raw_area_interval: [f64; 6],
+    /// Standard deviation over value of the `K_P` that follows from the raw areas; infinite when none does.
+    pub raw_kp_spread: f64,
+    /// The second-order model fitted to the record.
+    pub model: Option<SecondOrder>,
+    /// The output before the change, by the model.
+    pub model_offset: f64,
+    /// Half widths of the 90 % intervals of `gain, a1, a2, dead_time` of the model, for a process that is such a model.
+    pub model_interval: Option<SecondOrder>,
+    /// Root mean square of the residuals of the model, in the unit of `y`.
+    pub fit_rms: f64,
+    /// The fit whose areas compete with the raw ones.
+    pub fit: Option<Fit>,
+    /// Which areas were chosen.
+    pub chosen: Chosen,
+    /// Filter time in s for which `kp` is.
+    pub tf: f64,
+    /// `K_P` of the magnitude optimum, eq. (6), from the chosen areas.
+    pub kp: f64,
+    /// Half width of its 90 % interval.
+    pub kp_interval: f64,
+    /// Its standard deviation over its value.
+    pub kp_spread: f64,
+    /// Standard deviation of the white noise of `y`, in its unit.
+    pub sigma: f64,
+    /// Smallest step between values of `y`, 0 when there is none to be seen.
+    pub quantisation: f64,
+    /// The output before.
+    pub y0: f64,
+    /// The input before.
+    pub u0: f64,
+    /// The output after.
+    pub y_inf: f64,
+    /// The input after.
+    pub u_inf: f64,
+    /// Time of the change in s.
+    pub change_at: f64,
+    /// Time in s from which the output stays within 2 % of its change of the final value.
+    pub settled_at: f64,
+    /// Time in s up to which the raw areas integrate and from which the final values are averaged.
+    pub tail_from: f64,
+    /// What a person should know.
+    pub warnings: Warnings,
+}
+
+impl Identified {
+    /// The output of the fitted second-order model, baseline included, at the rows of the recording it is from.
+    #[must_use]
+    pub fn simulate(&self, recording: &Recording<'_>) -> Option<std::vec::Vec<f64>> {
+        let model = self.model?;
+        let offset = self.model_offset;
+        let span = recording.t.last()? - self.change_at;
+        let mut before = self.u0;
+        let mut moves = super::response::Moves::default();
+        for (t, u) in recording.t.iter().zip(recording.u) {
+            if *t >= self.change_at && *u != before {
+                moves.at.push((t - self.change_at) / span);
+                moves.by.push(u - before);
+                before = *u;
+            }
+        }
+        let lag = super::response::Lag { a1: model.a1 / span, a2: model.a2 / (span * span) };
+        let times: std::vec::Vec<f64> = recording.t.iter().map(|t| (t - self.change_at) / span).collect();
+        let mut chain = super::response::Chain::new(&[lag]);
+        let (x, _) = chain.response(&times, &moves, model.dead_time / span);
+        Some(x.into_iter().map(|x| offset + model.gain * x).collect())
+    }
+}
+
+pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> Result<Identified, Refusal> {
+    if let Some(tf) = options.tf.filter(|tf| !(*tf >= 0.0 && *tf <= 1e150)) {
+        return Err(Refusal::OutOfRange { parameter: "tf", value: tf, min: 0.0, max: 1e150 });
+    }
+    let record = Record::new(recording, options)?;
+    let mut warnings = Warnings::new();
+    let fits = structures::fits(&record);
+    let settling = Settling::new(&record, fits.as_ref());
+    settling.check(&mut warnings)?;
+    // The filter follows the slowness of the process, known well enough from either way.
+    let mean_time = fits.as_ref().map(|fits| fits.best.areas()).map_or(0.05, |areas| areas[1] / areas[0]);
+    let tf = options.tf.map_or(mean_time.clamp(0.0, 1.0) / 25.0, |tf| tf / record.time);
+    let raw = estimate::raw(&record, fits.as_ref(), settling.row, tf);
+    let fitted = fits.as_ref().map(|fits| estimate::fitted(fits, tf));
+    let explained = fits.as_ref().is_some_and(|fits| unexplained(&record, &fits.best) <= 1.0);
+    let chosen = choose(&raw.estimate, fitted.as_ref(), explained, &mut warnings);
+    let best = match (chosen, &fitted) {
+        (Chosen::Fit, Some(fitted)) => fitted,
+        _ => &raw.estimate,
+    };
+    let kp = gains::kp(&best.areas, tf)?;
+    if best.kp_spread > MOST_SPREAD_OF_ALL {
+        return Err(Refusal::Data {
+            why: "noise hides how the output moves: the controller gain is uncertain by more than its size",
+            help: "make a larger change of the input, record a longer steady state after it, or filter less noise in",
+        });
+    }
+    remarks(&record, fits.as_ref(), &mut warnings);
+    let scale = Scale { gain: record.output / record.input, time: record.time };
+    let y_of = |y: f64| record.y0 + y * record.output;
+    let second = fits.as_ref().map(|fits| &fits.second_order);
+    let found = Identified {
+        areas: scale.areas(&best.areas),
+        area_interval: scale.sizes(&best.interval),
+        raw_areas: scale.areas(&raw.estimate.areas),
+        raw_area_interval: scale.sizes(&raw.estimate.interval),
+        raw_kp_spread: raw.estimate.kp_spread,
+        model: second.map(|fit| scale.second_order(fit)),
+        model_offset: second.map_or(record.y0, |fit| y_of(fit.linear[0])),
+        model_interval: second.map(|fit| scale.second_order_interval(fit)),
+        fit_rms: second.map_or(0.0, |fit| fit.rms * record.output.abs()),
+        fit: fits.as_ref().zip(fitted.as_ref()).map(|(fits, of)| Fit {
+            order: fits.best.shape.order,
+            offset: y_of(fits.best.linear[0]),
+            gain: fits.best.linear[1] * scale.gain,
+            b1: if fits.best.shape.zero {
+                fits.best.linear[2] / fits.best.linear[1] * scale.time
+            } else {
+                0.0
+            },
+            a: scale.denominator(fits.best.denominator()),
+            dead_time: fits.best.times[0] * scale.time,
+            rms: fits.best.rms * record.output.abs(),
+            areas: scale.areas(&of.areas),
+            area_interval: scale.sizes(&of.interval),
+            kp_spread: of.kp_spread,
+        }),
+        chosen,
+        tf: tf * scale.time,
+        kp: kp / scale.gain,
+        kp_interval: best.kp_interval / scale.gain.abs(),
+        kp_spread: best.kp_spread,
+        sigma: record.noise.sigma * record.output.abs(),
+        quantisation: record.noise.quantisation * record.output.abs(),
+        y0: record.y0,
+        u0: record.u0,
+        y_inf: y_of(raw.last_output),
+        u_inf: record.u0 + raw.last_input * record.input,
+        change_at: record.change_at,
+        settled_at: record.change_at + settling.at * record.time,
+        tail_from: record.change_at + record.t[raw.tail] * record.time,
+        warnings,
+    };
+    if found.numbers_are_finite() {
+        return Ok(found);
+    }
+    Err(Refusal::Data {
+        why: "the numbers of the record are too large or too small to compute with",
+        help: "choose other units",
+    })
+}
+
+impl Identified {
+    fn numbers_are_finite(&self) -> bool {
+        let model = self.model.map_or([0.0; 4], |m| [m.gain, m.a1, m.a2, m.dead_time]);
+        let lists = [self.areas.values(), self.area_interval];
+        lists
+            .iter()
+            .flatten()
+            .chain(&model)
+            .chain(&[self.kp, self.kp_interval, self.tf])
+            .all(|x| x.is_finite())
+    }
+}
+
+/// From the scale of the record to units.
+struct Scale {
+    gain: f64,
+    time: f64,
+}
+
+impl Scale {
+    fn sizes(&self, areas: &Six) -> Six {
+        let mut unit = self.gain.abs();
+        core::array::from_fn(|k| {
+            unit *= if k > 0 { self.time } else { 1.0 };
+            areas[k] * unit
+        })
+    }
+
+    fn areas(&self, areas: &Six) -> Areas {
+        Areas::new(self.sizes(areas).map(|a| a * self.gain.signum()))
+    }
+
+    fn denominator(&self, mut a: [f64; 4]) -> [f64; 4] {
+        let mut unit = 1.0;
+        for a in &mut a {
+            unit *= self.time;
+            *a *= unit;
+        }
+        a
+    }
+
+    fn second_order(&self, fit: &Fitted) -> SecondOrder {
+        let [dead_time, a1, a2, ..] = fit.times;
+        SecondOrder {
+            gain: fit.linear[1] * self.gain,
+            a1: a1 * self.time,
+            a2: a2 * self.time * self.time,
+            dead_time: dead_time * self.time,
+        }
+    }
+
+    fn second_order_interval(&self, fit: &Fitted) -> SecondOrder {
+        let half = |i: usize| estimate::NINETY * libm::sqrt(fit.covariance[i][i].max(0.0));
+        SecondOrder {
+            gain: half(1) * self.gain.abs(),
+            dead_time: half(2) * self.time,
+            a1: half(3) * self.time,
+            a2: half(4) * self.time * self.time,
+        }
+    }
+}
+
+/// When the output has come to rest, and what is still to come at the end.
+struct Settling {
+    /// In the time of the record.
+    at: f64,
+    /// The row, among those after the change.
+    row: usize,
+    left: f64,
+}
+
+impl Settling {
+    fn new(record: &Record, fits: Option<&Fits>) -> Self {
+        let (t, u, y) = record.after();
+        let tail = tail_rows(t, 0.1);
+        let from = t.len() - tail;
+        // Two halves of the end: what an output that creeps on, or an input, still does.
+        let earlier = from.saturating_sub(tail);
+        let drift = |list: &[f64]| {
+            let (a, b) = (mean(&list[earlier..from]), mean(&list[from..]));
+            ((b - a).abs() - 4.0 * libm::sqrt(2.0 * record.noise.of_mean(tail)), b)
+        };
+        let ((y_drift, y_end), (u_drift, _)) = (drift(y), drift(u));
+        let mut left = y_drift.max(u_drift).max(0.0) / 1.5;
+        let simulated = fits.map(|fits| {
+            let best = &fits.best;
+            let mut instants = t.to_vec();
+            instants.push(1.0 + best.times[0] + 60.0 * best.slowest());
+            let mut all = best.simulate(record, &instants);
+            let rest = all.pop().unwrap_or(y_end);
+            left = left.max((rest - all[all.len() - 1]).abs() / (rest - best.linear[0]).abs());
+            (all, rest)
+        });
+        let (values, rest) = simulated.unwrap_or_else(|| (y.to_vec(), y_end));
+        let band = 0.02 * rest.abs().max(1e-300);
+        let row = values.iter().rposition(|y| (y - rest).abs() > band).map_or(0, |last| last + 1);
+        let row = row.min(t.len() - 1);
+        Self { at: t[row], row, left: if left.is_finite() { left } else { 1.0 } }
+    }
+
+    fn check(&self, warnings: &mut Warnings) -> Result<(), Refusal> {
+        if self.left > MOST_UNSETTLED {
+            return Err(Refusal::Data {
+                why: "the record ends before the output is at rest",
+                help: "record longer: until input and output have stayed where they end for a while",
+            });
+        }
+        if self.left > UNSETTLED {
+            let value = 100.0 * self.left;
+            let text = "per cent of the change are still to come at the end of the record";
+            let _ = warnings.push(Warning::Value { about: "settled", value, text });
+        }
+        Ok(())
+    }
+}
+
+/// Raw areas when they are certain beyond question, the fit when they are not certain enough, and between the two the
+/// one with the smaller interval; a fit that does not explain the record only when there is no other way.
+fn choose(raw: &Estimate, fitted: Option<&Estimate>, explained: bool, warnings: &mut Warnings) -> Chosen {
+    let mut say = |text| {
+        let about = "chosen";
+        let warning = match raw.kp_spread.is_finite() {
+            true => Warning::Value { about: "kp_spread of the raw areas", value: raw.kp_spread, text },
+            false => Warning::Text { about, text },
+        };
+        let _ = warnings.push(warning);
+    };
+    let good = raw.kp_spread <= MOST_SPREAD;
+    if raw.kp_spread <= GOOD_SPREAD || (good && !explained) {
+        return Chosen::Areas;
+    }
+    let Some(fitted) = fitted.filter(|fitted| fitted.kp.is_some()) else {
+        if !good {
+            say("no model fits the record either; the raw areas are used although they are uncertain");
+        }
+        return Chosen::Areas;
+    };
+    if good && raw.kp_interval <= fitted.kp_interval {
+        return Chosen::Areas;
+    }
+    if good {
+        say("the areas of the fitted model are less uncertain and are used");
+        return Chosen::Fit;
+    }
+    if raw.kp_spread.is_finite() {
+        say("more than 0.1, so the areas of the fitted model are used");
+    } else {
+        say("no controller follows from the raw areas, so the areas of the fitted model are used");
+    }
+    Chosen::Fit
+}
+
+/// More than 1 when the residuals of a fit are more than noise: larger than it, or going on for long.
+fn unexplained(record: &Record, fit: &Fitted) -> f64 {
+    let noise = record.noise.sigma.max(record.noise.quantisation / 3.4);
+    (fit.rms / (2.0 * noise).max(1e-6)).min(fit.colour)
+}
+
+fn remarks(record: &Record, fits: Option<&Fits>, warnings: &mut Warnings) {
+    let mut say = |warning| {
+        let _ = warnings.push(warning);
+    };
+    let Some(fits) = fits else {
+        say(Warning::Text { about: "model", text: "no second-order model could be fitted" });
+        return;
+    };
+    let noise = record.noise.sigma.max(record.noise.quantisation / 3.4).max(1e-9);
+    if unexplained(record, &fits.best) > 1.0 {
+        say(Warning::Value {
+            about: "misfit over noise",
+            value: fits.best.rms / noise,
+            text: "no model of a few lags explains the record; look for a disturbance, friction or a changing gain",
+        });
+    } else if fits.best.shape.order > 2 || fits.best.shape.zero {
+        say(Warning::Value {
+            about: "fit_rms over noise",
+            value: fits.second_order.rms / noise,
+            text: "the record asks for more than two lags with dead time; the areas are those of the richer fit",
+        });
+    }
+    if record.before < 3 {
+        say(Warning::Text {
+            about: "y0",
+            text: "fewer than three rows before the change: the baseline rests on them and on the fit",
+        });
+    }
+    let (t, ..) = record.after();
+    let areas = fits.best.areas();
+    let rows = t.partition_point(|t| *t < areas[1] / areas[0]);
+    if rows < 10 {
+        say(Warning::Value {
+            about: "rows in A1/A0",
+            value: rows as f64,
+            text: "sample faster for areas that are right to a per cent",
+        });
+    }
+}
