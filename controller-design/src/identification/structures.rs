@@ -38,7 +38,7 @@ pub(super) fn fits(record: &Record) -> Option<Fits> {
     // A zero is asked for only where lags leave something to explain.
     let floor = 10.0 * ARITHMETIC;
     if best.rms > floor
-        && (best.colour > 2.0 || best.rms > 1.5 * record.noise.sigma.max(record.noise.quantisation / 3.5))
+        && (best.colour > 1.1 || best.rms > 1.5 * record.noise.sigma.max(record.noise.quantisation / 3.5))
     {
         for order in 2..=3 {
             let shape = Shape { order, zero: true };
