@@ -69,7 +69,8 @@ fn scales_of_time_and_signals_do_not_matter() {
 fn any_change_between_two_steady_states_will_do() {
     let process = Process::equal(2, 1.0, 0.5).gain(2.0);
     let t: Vec<f64> = (0..4000).map(|i| 0.02 * f64::from(i)).collect();
-    let shapes: [(&str, fn(f64) -> f64); 4] = [
+    type Shape = fn(f64) -> f64;
+    let shapes: [(&str, Shape); 4] = [
         ("two steps", |t| {
             if t < 3.0 {
                 0.0

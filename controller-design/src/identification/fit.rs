@@ -115,13 +115,15 @@ fn attempt(rows: &Rows<'_>, shape: Shape, times: &Times) -> Option<Trial> {
 }
 
 /// The normal equations of all parameters at a trial: linear ones first.
-fn linearised(rows: &Rows<'_>, shape: Shape, times: &Times, trial: &Trial) -> Normal {
+///
+/// `a2` is varied by `share` of its scale: near 0 it acts like dead time, and only a share that is as large as its own
+/// uncertainty tells the two apart.
+fn linearised(rows: &Rows<'_>, shape: Shape, times: &Times, trial: &Trial, share: f64) -> Normal {
     let scale = times[1].max(times[0]).max(libm::sqrt(times[2])).max(1e-6);
     let slopes: Vec<Vec<f64>> = (0..shape.times())
         .map(|j| {
             // The quadratic's a2 is a time squared.
-            let unit = if j == 2 || j == 4 { scale * scale } else { scale };
-            let step = 1e-5 * unit;
+            let step = if j == 2 || j == 4 { share * scale * scale } else { 1e-5 * scale };
             let mut up = *times;
             up[j] += step;
             let moved = rows.columns(shape, &up);
@@ -153,7 +155,7 @@ fn descend(rows: &Rows<'_>, shape: Shape, start: &Times, passes: usize) -> Optio
     let linear = shape.linear();
     let floor = 1e-20 * rows.t.len() as f64;
     for _ in 0..passes {
-        let normal = linearised(rows, shape, &times, &best);
+        let normal = linearised(rows, shape, &times, &best, 1e-5);
         let mut gained = None;
         // Parameters at 0 that want to be less stay there.
         let mut fixed = [false; MOST];
@@ -218,7 +220,7 @@ pub(super) fn fit(record: &Record, shape: Shape, starts: &[Times], until: f64) -
     let degrees = count.checked_sub(shape.parameters()).filter(|n| *n > 2)?;
     let colour = noise::colour(&best.residuals);
     let variance = best.squares / degrees as f64 * colour;
-    let normal = linearised(&rows, shape, &times, &best);
+    let normal = linearised(&rows, shape, &times, &best, 1e-2);
     // A time at its bound is known there no better than elsewhere; only what the record says nothing about is left out.
     let covariance = normal.inverse(variance)?;
     let rms = libm::sqrt(best.squares / count as f64);

@@ -8,6 +8,7 @@ use super::record::{Record, mean, tail_rows};
 use super::structures::{self, Fits};
 use super::{IdentifyOptions, Recording};
 use crate::areas::Areas;
+use crate::rules::reduction::Reduced;
 use crate::{Refusal, Warning, Warnings};
 
 /// Largest spread of `K_P` with which raw areas are used, and the one with which they are whatever the fit says.
@@ -160,9 +161,12 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
     if let Some(tf) = options.tf.filter(|tf| !(*tf >= 0.0 && *tf <= 1e150)) {
         return Err(Refusal::OutOfRange { parameter: "tf", value: tf, min: 0.0, max: 1e150 });
     }
-    let record = Record::new(recording, options)?;
+    let mut record = Record::new(recording, options)?;
     let mut warnings = Warnings::new();
     let fits = structures::fits(&record);
+    if let Some(best) = fits.as_ref().map(|fits| &fits.best) {
+        record.noise.confirm(best.rms, best.colour);
+    }
     let settling = Settling::new(&record, fits.as_ref());
     settling.check(&mut warnings)?;
     // The filter follows the slowness of the process, known well enough from either way.
@@ -184,6 +188,15 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
         });
     }
     remarks(&record, fits.as_ref(), &mut warnings);
+    let unfit = match Reduced::new(&Areas::new(best.areas)) {
+        Ok(reduced) => reduced.fallback,
+        Err(_) => true,
+    };
+    if unfit {
+        let text =
+            "the areas are not those of two lags with dead time: rules that need such a model do not apply";
+        let _ = warnings.push(Warning::Text { about: "areas", text });
+    }
     let scale = Scale { gain: record.output / record.input, time: record.time };
     let y_of = |y: f64| record.y0 + y * record.output;
     let second = fits.as_ref().map(|fits| &fits.second_order);

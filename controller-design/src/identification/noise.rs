@@ -35,6 +35,13 @@ impl Noise {
         }
     }
 
+    /// Takes over the size of white residuals of a fit, which are many more than the rows at rest.
+    pub(super) fn confirm(&mut self, rms: f64, colour: f64) {
+        if colour < 1.1 && (rms - self.sigma).abs() < 0.5 * self.sigma {
+            self.sigma = rms;
+        }
+    }
+
     /// Variance of the mean of `count` values.
     pub(super) fn of_mean(&self, count: usize) -> f64 {
         let steady = self.steady_quantisation();
@@ -81,7 +88,7 @@ pub(super) fn colour(residuals: &[f64]) -> f64 {
     let blocks: Vec<f64> = residuals.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>()).collect();
     let power = |list: &[f64]| list.iter().map(|r| r * r).sum::<f64>() / list.len().max(1) as f64;
     let (single, whole) = (power(residuals), power(&blocks));
-    if blocks.len() < 8 || !(whole > 0.0) {
+    if blocks.len() < 8 || whole.is_nan() || whole <= 0.0 {
         return 1.0;
     }
     // Two standard deviations of an estimated correlation of white noise.

@@ -46,7 +46,7 @@ impl Record {
                 help: "give one input and one output for each time",
             });
         }
-        if [time, input, output].iter().any(|list| list.iter().any(|x| !(x.abs() <= 1e150))) {
+        if [time, input, output].iter().any(|list| list.iter().any(|x| x.is_nan() || x.abs() > 1e150)) {
             return Err(Refusal::Data {
                 why: "the recording has a value that is not a finite number of usual size",
                 help: "take the bad rows out",
@@ -70,7 +70,7 @@ impl Record {
         for i in change..rows {
             merged.push(time[i], input[i], output[i]);
         }
-        if merged.t.len() < FEWEST || !(span > 0.0) {
+        if merged.t.len() < FEWEST || span <= 0.0 {
             return Err(too_few());
         }
         // The output at the moment of the change has not yet seen it.

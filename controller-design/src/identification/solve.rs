@@ -86,7 +86,7 @@ impl Normal {
                     sum -= factor.lower[i][k] * factor.lower[j][k];
                 }
                 if i == j {
-                    if !(sum > 1e-15) {
+                    if sum.is_nan() || sum <= 1e-15 {
                         return None;
                     }
                     factor.lower[i][i] = root(sum);
