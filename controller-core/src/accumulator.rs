@@ -74,6 +74,23 @@ impl<T: Real> Accumulator<T> {
         self.sum
     }
 
+    /// `x` minus the sum, with the part of it that does not fit in [`value`](Self::value).
+    #[must_use]
+    #[inline(always)]
+    pub fn short_of(&self, x: T) -> T {
+        (x - self.sum) - self.carry
+    }
+
+    /// Keeps the sum within `-most..=most`.
+    #[inline(always)]
+    pub(crate) fn keep_within(&mut self, most: T) {
+        // Written so that a NaN, which no sum of checked numbers gives, could not stay either.
+        let inside = self.sum.magnitude() <= most;
+        if !inside {
+            self.set(self.sum.clamp_to(-most, most));
+        }
+    }
+
     /// The part of the sum that does not fit in [`value`](Self::value).
     #[must_use]
     pub fn carry(&self) -> T {

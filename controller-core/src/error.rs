@@ -3,7 +3,7 @@
 use core::fmt;
 use heapless::Vec;
 
-/// How many faults one [`ConfigErrors`] can hold: more than there are parameters. 32 bytes each, on the stack of the
+/// How many faults one [`ConfigErrors`] can hold: more than one loop has parameters. 32 bytes each, on the stack of the
 /// caller of `new`.
 pub const MAX_FAULTS: usize = 48;
 
@@ -116,6 +116,18 @@ params! {
     Span = 44, "span";
     /// High-frequency gain times signal range: what would overflow.
     Overflow = 45, "gain times range";
+    /// Input gain of an ADRC's model.
+    B0 = 46, "adrc.b0";
+    /// Gain of an ADRC's feedback from the output.
+    AdrcKp = 47, "adrc.kp";
+    /// Gain of an ADRC's feedback from the slope.
+    AdrcKd = 48, "adrc.kd";
+    /// Observer gain of an ADRC into the output.
+    Beta1 = 49, "adrc.beta1";
+    /// Observer gain of an ADRC into the slope.
+    Beta2 = 50, "adrc.beta2";
+    /// Observer gain of an ADRC into the disturbance.
+    Beta3 = 51, "adrc.beta3";
 }
 
 /// Why a value is refused. The numbers are stable.

@@ -1,9 +1,11 @@
 //! A law and its state in one object, for those who want one.
 
+use crate::adrc::{Adrc, AdrcInput, AdrcOutput, AdrcState};
 use crate::compensator::Compensate;
 use crate::controller::{Controller, ControllerInput, ControllerOutput, ControllerState};
 use crate::pid::{Pid, PidInput, PidOutput, PidState};
 use crate::real::Real;
+use crate::regulator::Regulator;
 
 /// A discretised law: immutable coefficients that move a state.
 pub trait Law {
@@ -84,8 +86,20 @@ impl<T: Real> Law for Pid<T> {
     }
 }
 
-impl<T: Real, C: Compensate<T>> Law for Controller<T, C> {
-    type State = ControllerState<T, C::State>;
+impl<T: Real> Law for Adrc<T> {
+    type State = AdrcState<T>;
+    type Input = AdrcInput<T>;
+    type Output = AdrcOutput<T>;
+    fn run(&self, state: &mut AdrcState<T>, input: &AdrcInput<T>) -> AdrcOutput<T> {
+        self.step(state, *input)
+    }
+    fn take_over(&self, old: &Self, state: &mut AdrcState<T>) {
+        self.adopt(old, state);
+    }
+}
+
+impl<T: Real, C: Compensate<T>, L: Regulator<T>> Law for Controller<T, C, L> {
+    type State = ControllerState<T, C::State, L::State>;
     type Input = ControllerInput<T>;
     type Output = ControllerOutput<T>;
     fn run(&self, state: &mut Self::State, input: &Self::Input) -> ControllerOutput<T> {

@@ -1,7 +1,7 @@
 //! Discrete-time control that runs unchanged on a microcontroller, inside a PLC runtime and on a laptop.
 //!
 //! The crate holds the runtime blocks: a two-degree-of-freedom [`Pid`], the disturbance estimator and observer
-//! ([`compensator`]), and a [`Controller`] that composes them with limits, set-point conditioning, anti-windup,
+//! ([`compensator`]), a second-order ADRC ([`Adrc`]), and a [`Controller`] that composes them with limits, set-point conditioning, anti-windup,
 //! modes, bad-sample handling and alarms. `no_std`, no allocation, no unsafe code, `f32` and `f64`.
 //!
 //! # Three types per block
@@ -38,6 +38,7 @@
 #![no_std]
 
 mod accumulator;
+pub mod adrc;
 mod alarm;
 mod anti_windup;
 pub mod compensator;
@@ -53,12 +54,14 @@ mod param_cell;
 pub mod pid;
 pub mod plant_model;
 mod real;
+mod regulator;
 mod sample;
 mod setpoint;
 pub mod snapshot;
 mod status;
 
 pub use accumulator::Accumulator;
+pub use adrc::{Adrc, AdrcConfig, AdrcInput, AdrcOutput, AdrcState};
 pub use alarm::{AlarmConfig, Alarms};
 pub use anti_windup::{AntiWindup, AntiWindupConfig};
 pub use compensator::{
@@ -78,6 +81,7 @@ pub use param_cell::ParamCell;
 pub use pid::{Action, IntegralRule, Pid, PidCoefficients, PidConfig, PidInput, PidOutput, PidState, Span};
 pub use plant_model::PlantModel;
 pub use real::Real;
+pub use regulator::Regulator;
 pub use sample::{
     FallbackAction, FallbackConfig, FallbackReturn, Quality, SampleGuard, SampleGuardState, Verdict,
 };

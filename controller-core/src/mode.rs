@@ -13,7 +13,8 @@
 /// | Fallback | hold, substitute or ramp, as configured | follows | ramps to `r` | runs |
 ///
 /// "Follows": `I = u - pd - u_f - offset`, so that leaving the mode moves nothing. Range and rate limits hold in
-/// every mode. Fallback cannot be asked for: it is what a loop does without a good measurement.
+/// every mode. Under an ADRC the "integral term" is minus the estimated disturbance: it is observed in every mode, and set
+/// where the loop is closed. Fallback cannot be asked for: it is what a loop does without a good measurement.
 /// Priority: Off, Track, Fallback, Manual, Hold, then Auto and Cascade.
 ///
 /// ```

@@ -66,9 +66,9 @@ pub struct ControllerOutput<T> {
     pub u: T,
     /// Output before the limits \[u\].
     pub v: T,
-    /// Integral term \[u\].
+    /// Integral term; of an ADRC minus the estimated disturbance \[u\].
     pub i: T,
-    /// Filtered proportional and derivative terms \[u\].
+    /// Filtered proportional and derivative terms; of an ADRC the feedback of its other estimates \[u\].
     pub pd: T,
     /// Output of the compensator \[u\], whether it is used or not.
     pub u_f: T,

@@ -5,14 +5,15 @@ use super::state::ControllerState;
 use crate::compensator::Compensate;
 use crate::mode::Mode;
 use crate::real::Real;
+use crate::regulator::Regulator;
 use crate::sample::SampleGuardState;
 use crate::snapshot::{self, SnapshotError};
 use crate::status::Status;
 
-impl<T: Real, C: Compensate<T>> Controller<T, C> {
+impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// A zeroed state: it settles itself on its first good sample, at the read-back or at `initial_output`.
     #[must_use]
-    pub fn zeroed(&self) -> ControllerState<T, C::State>
+    pub fn zeroed(&self) -> ControllerState<T, C::State, L::State>
     where
         C::State: Default,
     {
@@ -21,15 +22,15 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
 
     /// Puts the loop at rest: set-point `r0`, measurement `y0`, output `u0`. Nothing moves until an input does.
     /// Values that are not finite or out of range are moved into their ranges. Cost: fills the delay line.
-    pub fn settle(&self, state: &mut ControllerState<T, C::State>, r0: T, y0: T, u0: T) {
+    pub fn settle(&self, state: &mut ControllerState<T, C::State, L::State>, r0: T, y0: T, u0: T) {
         let (y_lo, y_hi) = self.guard.range();
         let y0 = y0.clamp_to(y_lo, y_hi);
         let u0 = self.limit.into_range(u0);
         let r0 = self.setpoint.into_range(r0);
         self.compensator.settle(&mut state.compensator, y0, u0);
         let seen = self.seen(r0, y0);
-        self.pid.settle(&mut state.pid, seen, u0);
-        state.pd = u0 - state.pid.integral();
+        self.law.settle(&mut state.law, seen, u0);
+        state.pd = u0 - L::integral(&state.law);
         state.guard = SampleGuardState::default();
         state.mode = Mode::Auto;
         state.u.set(u0);
@@ -49,7 +50,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// sampling period the line's samples mean other times: the compensator then settles, its last output going
     /// into the integral term. A state whose signals are too large for the new gains settles where it is.
     /// Cost: two steps of the blocks without their delay line, and one read of every cell of it.
-    pub fn adopt(&self, old: &Self, state: &mut ControllerState<T, C::State>) {
+    pub fn adopt(&self, old: &Self, state: &mut ControllerState<T, C::State, L::State>) {
         if !state.started {
             // Nothing has happened yet; only the shape may have to change.
             self.compensator.settle(&mut state.compensator, T::ZERO, T::ZERO);
@@ -59,7 +60,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         // What the old anti-windup rule still owes for the last sample.
         let u = state.u.value();
         let owed = if state.mode.is_automatic() {
-            old.anti_windup.correction(state.pid.increment(), state.v, u)
+            old.anti_windup.correction(L::last_increment(&state.law), state.v, u)
         } else {
             T::ZERO
         };
@@ -68,9 +69,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             self.settle_where_it_is(state);
             return;
         }
-        let last = state.pid.input();
-        let before = old.pid.preview(&state.pid, last);
-        let after = self.pid.preview(&state.pid, self.seen(state.r.value(), state.y));
+        let lost = self.law.convert(&old.law, &mut state.law, self.seen(state.r.value(), state.y));
         let jump = if self.ts == old.ts {
             self.compensator.adopt(&old.compensator, &mut state.compensator, state.y, u)
         } else {
@@ -79,15 +78,15 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         };
         let jump = if state.compensating { jump } else { T::ZERO };
         state.u_f = state.u_f + jump;
-        state.pid.shift_integral((before - after) + (owed - jump));
-        state.pid.bound_integral(self.integral_bound);
+        L::shift(&mut state.law, lost + (owed - jump));
+        self.law.bound_integral(&mut state.law, self.integral_bound);
         // The last increment has been judged; the new rule must not judge it again.
-        state.pid.forget_increment();
+        L::forget_increment(&mut state.law);
     }
 
     /// Whether the signals of `state`, which may come from a law with other ranges or from a snapshot, leave room for this
     /// law's gains in the number type.
-    fn holds(&self, state: &ControllerState<T, C::State>) -> bool {
+    fn holds(&self, state: &ControllerState<T, C::State, L::State>) -> bool {
         // The larger of a range and of what the state holds now.
         let size = |(lo, hi): (T, T), now: [T; 2]| {
             let [now, carry] = now.map(|x| x.magnitude().to_f64());
@@ -98,22 +97,23 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let u = size(self.output_range(), [state.u.value(), state.u.carry()]);
         let y = size(self.guard.range(), [state.y, T::ZERO]);
         let seen = y + r + self.deadband.width().to_f64();
-        let signals = self.pid.reach(&state.pid, r, seen) + self.compensator.reach(&state.compensator, y, u);
+        let law = self.law.reach(&state.law, r, seen, u + state.offset.magnitude().to_f64());
+        let signals = law + self.compensator.reach(&state.compensator, y, u);
         let numbers = [state.u.carry(), state.r.carry(), state.u.value(), state.r.value()];
         let more = [state.v, state.pd, state.u_f, state.y, state.r_asked, state.offset];
         let own: f64 = numbers.iter().chain(&more).map(|x| x.magnitude().to_f64()).sum();
-        signals + state.pid.integral_size() + own <= 1e-2 * T::LARGEST
+        signals + own <= 1e-2 * T::LARGEST
     }
 
     /// Everything at rest at the last measurement and output, moved into this law's ranges.
-    fn settle_where_it_is(&self, state: &mut ControllerState<T, C::State>) {
+    fn settle_where_it_is(&self, state: &mut ControllerState<T, C::State, L::State>) {
         let (y_lo, y_hi) = self.guard.range();
         state.y = state.y.clamp_to(y_lo, y_hi);
         let u = self.limit.into_range(state.u.value());
         let r = self.setpoint.into_range(state.r.value());
         state.r.set(r);
         self.compensator.settle(&mut state.compensator, state.y, u);
-        self.pid.settle(&mut state.pid, self.seen(r, state.y), u);
+        self.law.settle(&mut state.law, self.seen(r, state.y), u);
         (state.v, state.u_f) = (u, T::ZERO);
     }
 
@@ -123,7 +123,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// measurement; beyond, only what it knows of the applied output goes on, and the loop settles at its next good
     /// measurement. The next output carries [`Status::OVERRUN`].
     /// Cost: at most `hold_samples` compensator samples, or half of 1000 samples plus the capacity of the delay line.
-    pub fn advance(&self, state: &mut ControllerState<T, C::State>, n: u32) {
+    pub fn advance(&self, state: &mut ControllerState<T, C::State, L::State>, n: u32) {
         state.overrun |= n > 0;
         if !state.started {
             return;
@@ -147,17 +147,17 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     #[must_use]
     pub fn resolution(&self) -> f64 {
         let (lo, hi) = (self.limit.lo().magnitude(), self.limit.hi().magnitude());
-        self.pid.resolution(if lo > hi { lo } else { hi })
+        self.law.resolution(if lo > hi { lo } else { hi })
     }
 
     /// Number of words that [`save`](Self::save) writes for `state`.
     #[must_use]
-    pub fn snapshot_words(state: &ControllerState<T, C::State>) -> usize {
+    pub fn snapshot_words(state: &ControllerState<T, C::State, L::State>) -> usize {
         Self::body_words(state) + snapshot::FRAME
     }
 
-    fn body_words(state: &ControllerState<T, C::State>) -> usize {
-        ControllerState::<T, C::State>::own_words() + C::words(&state.compensator)
+    fn body_words(state: &ControllerState<T, C::State, L::State>) -> usize {
+        ControllerState::<T, C::State, L::State>::own_words(L::NUMBERS) + C::words(&state.compensator)
     }
 
     /// Writes `state` into `words`; returns how many were used. A loop restored from them continues bit for bit.
@@ -181,10 +181,11 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// ```
     pub fn save(
         &self,
-        state: &ControllerState<T, C::State>,
+        state: &ControllerState<T, C::State, L::State>,
         words: &mut [u32],
     ) -> Result<usize, SnapshotError> {
         snapshot::write::<T>(words, Self::body_words(state), |writer| {
+            L::save(&state.law, writer);
             state.save_own(writer);
             C::save(&state.compensator, writer);
         })
@@ -197,11 +198,12 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// Another version or shape, a wrong checksum, a number that is not finite or too large for this law.
     pub fn restore(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         words: &[u32],
     ) -> Result<(), SnapshotError> {
         let mut fresh = state.clone();
         snapshot::read::<T, ()>(words, Self::body_words(state), |reader| {
+            fresh.law = L::restore(reader)?;
             fresh.restore_own(reader)?;
             C::restore(&mut fresh.compensator, reader)?;
             self.holds(&fresh).then_some(())

@@ -1,18 +1,20 @@
 //! The loop itself.
 
 use super::config::ControllerConfig;
+use crate::adrc::{Adrc, AdrcConfig};
 use crate::alarm::Alarms;
-use crate::anti_windup::AntiWindup;
+use crate::anti_windup::{AntiWindup, AntiWindupConfig};
 use crate::compensator::{Compensate, NoCompensator};
 use crate::deadband::Deadband;
 use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::limit::{Limit, RANGE_LIMIT};
 use crate::pid::Pid;
 use crate::real::{Real, coefficient};
+use crate::regulator::Regulator;
 use crate::sample::SampleGuard;
 use crate::setpoint::Setpoint;
 
-/// A whole control loop for one sampling period: PID, compensator `C`, limits, set-point, anti-windup, modes, bad
+/// A whole control loop for one sampling period: the law `L` ([`Pid`], or [`Adrc`]), compensator `C`, limits, set-point, anti-windup, modes, bad
 /// samples, alarms, in the order of the [module](crate::controller).
 ///
 /// Difference equation: `v[k] = I[k] + pd[k] + offset[k] + u_f[k]`, `u[k] = limit(v[k])`, the parts as their blocks say.
@@ -35,8 +37,8 @@ use crate::setpoint::Setpoint;
 /// assert_eq!(out.u, 30.0 + 2.0 * 5.0 + 0.25);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Controller<T, C = NoCompensator> {
-    pub(super) pid: Pid<T>,
+pub struct Controller<T, C = NoCompensator, L = Pid<T>> {
+    pub(super) law: L,
     pub(super) compensator: C,
     pub(super) limit: Limit<T>,
     pub(super) setpoint: Setpoint<T>,
@@ -76,6 +78,71 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     ) -> Result<Self, ConfigErrors> {
         let mut check = Checker::default();
         let pid = check.merge(Pid::new(&config.pid, ts));
+        let [kp, ki, _] = config.pid.signed_gains();
+        let reversed = ki < 0.0 || (ki == 0.0 && kp < 0.0);
+        Self::compose(check, config, pid, reversed, compensator, ts)
+    }
+
+    /// The PID law.
+    #[must_use]
+    pub fn pid(&self) -> &Pid<T> {
+        &self.law
+    }
+}
+
+impl<T: Real> Controller<T, NoCompensator, Adrc<T>> {
+    /// A loop with an ADRC in place of the PID, for the sampling period `ts` \[s\]. Everything else of `config` means
+    /// the same: limits, set-point, modes, bad samples, alarms.
+    ///
+    /// The observer runs in every mode on what was applied; an offset is known to it. Saturation needs no anti-windup
+    /// rule, `config.anti_windup` has no effect, nor do `inhibit_up` and `inhibit_down`: give the read-back. On a bad
+    /// sample the estimates hold. Closing the loop begins at the output that is there: what the feedback would jump by
+    /// goes into the estimate of the disturbance, which the observer then corrects.
+    ///
+    /// Cost: as a PID loop; the law 35 operations in place of 29, 5 compares more for the bounds of its states.
+    ///
+    /// # Errors
+    /// As [`with_compensator`](Self::with_compensator); `config.pid` must be left at its default gains of 0, and
+    /// `config.deadband` at 0: an observer would take the band for the plant.
+    ///
+    /// ```
+    /// use controller_core::{AdrcConfig, Controller, ControllerConfig, ControllerInput, LimitConfig};
+    /// let config = ControllerConfig { limits: LimitConfig::range(-2.0, 2.0), ..ControllerConfig::default() };
+    /// let law = Controller::<f32, _, _>::with_adrc(&config, &AdrcConfig::from_bandwidths(5.0, 10.0, 40.0), 0.001).unwrap();
+    /// let mut state = law.zeroed();
+    /// law.settle(&mut state, 1.0, 1.0, 0.5);
+    /// let out = law.step(&mut state, &ControllerInput { r: 1.01, y: 1.0, ..ControllerInput::default() });
+    /// assert!((out.u - (0.5 + 20.0 * 0.01)).abs() < 1e-4);
+    /// ```
+    pub fn with_adrc(config: &ControllerConfig, adrc: &AdrcConfig, ts: f64) -> Result<Self, ConfigErrors> {
+        let mut check = Checker::default();
+        let law = check.merge(Adrc::new(adrc, ts));
+        let pid = &config.pid;
+        for (param, gain) in [(Param::Kp, pid.kp), (Param::Ki, pid.ki), (Param::Kd, pid.kd)] {
+            check.range(param, gain, 0.0, 0.0);
+        }
+        check.range(Param::Deadband, config.deadband, 0.0, 0.0);
+        let config = ControllerConfig { anti_windup: AntiWindupConfig::None, deadband: 0.0, ..*config };
+        Self::compose(check, &config, law, adrc.b0 < 0.0, NoCompensator, ts)
+    }
+
+    /// The ADRC law.
+    #[must_use]
+    pub fn adrc(&self) -> &Adrc<T> {
+        &self.law
+    }
+}
+
+impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
+    /// The loop around `law`, whose faults are in `check` when there is none.
+    fn compose(
+        mut check: Checker,
+        config: &ControllerConfig,
+        law: Option<L>,
+        reversed: bool,
+        compensator: C,
+        ts: f64,
+    ) -> Result<Self, ConfigErrors> {
         let limit = check.merge(Limit::new(&config.limits, ts));
         let setpoint = check.merge(Setpoint::new(&config.setpoint, ts));
         let anti_windup = check.merge(AntiWindup::new(&config.anti_windup, &config.pid, ts));
@@ -97,12 +164,12 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         if let Some(other) = compensator.ts().filter(|&other| other != coefficient::<T>(ts)) {
             check.fault(Param::Ts, Reason::Mismatch, ts, other.to_f64(), other.to_f64());
         }
-        if let (true, Some(pid)) = (check.is_clean(), &pid) {
-            Self::check_overflow(&mut check, config, pid, &compensator);
+        if let (true, Some(law)) = (check.is_clean(), &law) {
+            Self::check_overflow(&mut check, config, law, &compensator);
         }
-        let parts = (pid, limit, setpoint, anti_windup, deadband, guard, alarms);
+        let parts = (law, limit, setpoint, anti_windup, deadband, guard, alarms);
         let (
-            Some(pid),
+            Some(law),
             Some(limit),
             Some(setpoint),
             Some(anti_windup),
@@ -116,7 +183,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             return Err(ConfigErrors::default());
         };
         check.finish(Self {
-            pid,
+            law,
             compensator,
             limit,
             setpoint,
@@ -129,16 +196,13 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             off_output: config.off_output.map(coefficient),
             initial_output: limit.into_range(coefficient(config.initial_output)),
             integral_bound: T::from_f64(1e-3 * T::LARGEST),
-            reversed: {
-                let [kp, ki, _] = config.pid.signed_gains();
-                ki < 0.0 || (ki == 0.0 && kp < 0.0)
-            },
+            reversed,
             ts: coefficient(ts),
         })
     }
 
     /// No product or sum of a step may leave a millionth of the number type's range.
-    fn check_overflow(check: &mut Checker, config: &ControllerConfig, pid: &Pid<T>, compensator: &C) {
+    fn check_overflow(check: &mut Checker, config: &ControllerConfig, law: &L, compensator: &C) {
         let larger = |a: f64, b: f64| if a.abs() > b.abs() { a.abs() } else { b.abs() };
         let y = larger(config.measurement_lo, config.measurement_hi);
         let r = larger(config.setpoint.lo, config.setpoint.hi);
@@ -146,17 +210,11 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let signal = y + r + config.deadband.abs();
         let offset = larger(config.offset_lo, config.offset_hi);
         let (from_y, from_u) = compensator.bounds();
-        let worst = pid.bound() * signal + from_y * y + from_u * u + offset;
+        let worst = law.bound(signal, u + offset) + from_y * y + from_u * u + offset;
         let most = 1e-6 * T::LARGEST;
         if worst.is_nan() || worst > most {
             check.fault(Param::Overflow, Reason::OutOfRange, worst, 0.0, most);
         }
-    }
-
-    /// The PID law.
-    #[must_use]
-    pub fn pid(&self) -> &Pid<T> {
-        &self.pid
     }
 
     /// The compensator law.

@@ -6,9 +6,9 @@
 //! 2. anti-windup with the output applied since the last sample ([`AntiWindup`](crate::AntiWindup)), which also goes
 //!    into the compensator's delay line;
 //! 3. `u_f` from `y[k]` ([`Compensate`](crate::Compensate));
-//! 4. working set-point ([`Setpoint`](crate::Setpoint)), deadband ([`Deadband`](crate::Deadband)), PID
-//!    ([`Pid`](crate::Pid));
-//! 5. `v = pid + offset + u_f`, or what the mode says ([`Mode`](crate::Mode));
+//! 4. working set-point ([`Setpoint`](crate::Setpoint)), deadband ([`Deadband`](crate::Deadband)), the law: a PID
+//!    ([`Pid`](crate::Pid)) or an ADRC ([`Adrc`](crate::Adrc));
+//! 5. `v = law + offset + u_f`, or what the mode says ([`Mode`](crate::Mode));
 //! 6. `u = limit(v)` ([`Limit`](crate::Limit)): offset and `u_f` are inside the saturation;
 //! 7. alarms ([`Alarms`](crate::Alarms)), status, output.
 

@@ -1,6 +1,7 @@
 //! The state of a loop.
 
 use crate::accumulator::Accumulator;
+use crate::adrc::AdrcState;
 use crate::mode::Mode;
 use crate::pid::PidState;
 use crate::real::Real;
@@ -8,13 +9,13 @@ use crate::sample::SampleGuardState;
 use crate::snapshot::{Reader, Writer};
 use crate::status::Status;
 
-/// State of a [`Controller`](crate::Controller) with compensator state `S`.
+/// State of a [`Controller`](crate::Controller) with compensator state `S` and the state `P` of its law.
 ///
 /// A default (zeroed) state settles itself on its first good sample; an explicit start is
 /// [`Controller::settle`](crate::Controller::settle).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ControllerState<T, S> {
-    pub(super) pid: PidState<T>,
+pub struct ControllerState<T, S, P = PidState<T>> {
+    pub(super) law: P,
     pub(super) compensator: S,
     pub(super) guard: SampleGuardState,
     /// Mode in force in the last sample.
@@ -44,22 +45,22 @@ pub struct ControllerState<T, S> {
     pub(super) started: bool,
 }
 
-impl<T: Real, S: Default> Default for ControllerState<T, S> {
+impl<T: Real, S: Default, P: Default> Default for ControllerState<T, S, P> {
     fn default() -> Self {
         Self::over(S::default())
     }
 }
 
-/// Words of the part of the state that has the same size in every loop, in numbers and in flags.
-const NUMBERS: usize = 9 + 10;
+/// The part of the state that has the same size in every loop, in numbers and in flags.
+const NUMBERS: usize = 10;
 const FLAGS: usize = 3;
 
-impl<T: Real, S> ControllerState<T, S> {
+impl<T: Real, S, P: Default> ControllerState<T, S, P> {
     /// A zeroed state over the compensator's state.
     #[must_use]
     pub fn over(compensator: S) -> Self {
         Self {
-            pid: PidState::default(),
+            law: P::default(),
             compensator,
             guard: SampleGuardState::default(),
             mode: Mode::Hold,
@@ -78,7 +79,25 @@ impl<T: Real, S> ControllerState<T, S> {
             started: false,
         }
     }
+}
 
+impl<T: Real, S> ControllerState<T, S> {
+    /// The state of the PID.
+    #[must_use]
+    pub fn pid(&self) -> &PidState<T> {
+        &self.law
+    }
+}
+
+impl<T: Real, S> ControllerState<T, S, AdrcState<T>> {
+    /// The state of the ADRC.
+    #[must_use]
+    pub fn adrc(&self) -> &AdrcState<T> {
+        &self.law
+    }
+}
+
+impl<T: Real, S, P> ControllerState<T, S, P> {
     /// The last output \[u\].
     #[must_use]
     pub fn u(&self) -> T {
@@ -103,19 +122,13 @@ impl<T: Real, S> ControllerState<T, S> {
         &self.compensator
     }
 
-    /// The state of the PID.
-    #[must_use]
-    pub fn pid(&self) -> &PidState<T> {
-        &self.pid
+    /// Words of everything but the compensator, `law` being the numbers of the law's state.
+    pub(super) const fn own_words(law: usize) -> usize {
+        (law + NUMBERS) * T::WORDS + FLAGS
     }
 
-    /// Words of everything but the compensator.
-    pub(super) const fn own_words() -> usize {
-        NUMBERS * T::WORDS + FLAGS
-    }
-
+    /// Everything but the law's and the compensator's state.
     pub(super) fn save_own(&self, writer: &mut Writer<'_>) {
-        writer.numbers(&self.pid.parts());
         let (u, r) = (&self.u, &self.r);
         writer.numbers(&[u.value(), u.carry(), r.value(), r.carry()]);
         writer.numbers(&[self.v, self.pd, self.u_f, self.y, self.r_asked, self.offset]);
@@ -128,7 +141,6 @@ impl<T: Real, S> ControllerState<T, S> {
     }
 
     pub(super) fn restore_own(&mut self, reader: &mut Reader<'_>) -> Option<()> {
-        self.pid = PidState::from_parts(reader.numbers()?);
         let [u, u_carry, r, r_carry] = reader.numbers()?;
         self.u = Accumulator::from_parts(u, u_carry);
         self.r = Accumulator::from_parts(r, r_carry);

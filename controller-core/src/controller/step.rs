@@ -8,6 +8,7 @@ use crate::limit::Limited;
 use crate::mode::Mode;
 use crate::pid::PidInput;
 use crate::real::Real;
+use crate::regulator::Regulator;
 use crate::sample::{Quality, Verdict};
 use crate::status::Status;
 
@@ -16,19 +17,22 @@ struct Checked<T> {
     y: T,
     u_f: T,
     applied: T,
+    /// The part of `applied` that the law itself has moved.
+    own: T,
     was: Mode,
     mode: Mode,
 }
 
-impl<T: Real, C: Compensate<T>> Controller<T, C> {
+impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// One sample. See the type and the [module](crate::controller) for what it computes and costs.
     pub fn step(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
     ) -> ControllerOutput<T> {
         let mut status = Status::OVERRUN.when(state.overrun);
         state.overrun = false;
+        let offset = state.offset;
 
         // 1. Inputs.
         let verdict = self.guard.judge(&mut state.guard, input.y, input.quality, input.acknowledge);
@@ -41,11 +45,13 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         }
         let (applied, replaced) = self.applied(state.u.value(), input.u_applied);
         status |= replaced;
+        let mut own = applied - offset;
         if !state.started {
             if !usable {
                 return self.without_measurement(state, input, applied, status);
             }
             self.start(state, input, applied);
+            own = applied;
         }
         // Good measurements are followed while a latched fallback waits, too.
         let y = if usable || verdict == Verdict::Await { input.y } else { state.y };
@@ -54,7 +60,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         // 2, 3. The applied output goes into the compensator, the disturbance comes out of it.
         let mut estimate = self.compensator.sample(&mut state.compensator, y, applied);
         if verdict == Verdict::UseAfterSettling {
-            self.resettle(state, y, applied);
+            self.resettle(state, y, applied, own);
             estimate = CompensatorOutput::default();
         }
         let u_f = self.use_compensator(state, input.compensate, estimate.u_f);
@@ -68,7 +74,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             (true, true) => was,
             (true, false) => Mode::Hold,
         };
-        let sample = Checked { y, u_f, applied, was, mode };
+        let sample = Checked { y, u_f, applied, own, was, mode };
         let mut slowest = None;
         let mut wanted = state.u.value();
         if held {
@@ -85,7 +91,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         let limited = self.limit_output(state, wanted, slowest);
         if !mode.is_automatic() {
             // The integral term follows, so that closing the loop moves nothing.
-            state.pid.set_integral(limited.u - state.pd - u_f - state.offset);
+            L::follow(&mut state.law, limited.u - state.pd - u_f - state.offset);
         }
         state.mode = mode;
 
@@ -109,7 +115,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     #[inline(always)]
     fn close(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
         sample: &Checked<T>,
     ) -> Status {
@@ -122,9 +128,10 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
             let mut r = state.r;
             self.setpoint.advance(&mut r, self.asked_by(sample.was, state, input));
             let seen = self.seen(r.value(), sample.y);
-            let increment = self.allowed(input, self.pid.increment(&state.pid, seen));
-            let i = state.pid.integral() + increment + self.unwind(state, sample);
-            Some((i + self.pid.preview(&state.pid, seen) + state.offset + sample.u_f, increment))
+            let increment = self.allowed(input, self.law.increment(&state.law, seen));
+            let there = self.law.preview(&state.law, seen, sample.own);
+            let i = there.i + increment + self.unwind(state, sample);
+            Some((i + there.pd + state.offset + sample.u_f, increment))
         } else {
             None
         };
@@ -132,33 +139,31 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         self.automatic(state, input, sample, begin)
     }
 
-    /// PID + offset + compensator; with `begin`, the integral term is set so that the sum is its first number, of which
+    /// Law + offset + compensator; with `begin`, the integral term is set so that the sum is its first number, of which
     /// the second is the increment that the next sample may still take back.
     #[inline(always)]
     fn automatic(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
         sample: &Checked<T>,
         begin: Option<(T, T)>,
     ) -> Status {
         let seen = self.seen(state.r.value(), sample.y);
-        let increment = self.pid.increment(&state.pid, seen);
+        let increment = self.law.increment(&state.law, seen);
         let allowed = self.allowed(input, increment);
-        state.pd = self.pid.filter(&mut state.pid, seen);
+        state.pd = self.law.filter(&mut state.law, seen, sample.own);
         match begin {
             Some((v, increment)) => {
-                state.pid.set_integral(v - state.pd - sample.u_f - state.offset);
-                state.pid.remember_increment(increment);
+                L::begin(&mut state.law, v - state.pd - sample.u_f - state.offset, increment);
             }
             None => {
                 let correction = self.unwind(state, sample);
-                state.pid.shift_integral(correction);
-                state.pid.integrate(allowed);
+                self.law.integrate(&mut state.law, correction, allowed);
             }
         }
-        state.pid.bound_integral(self.integral_bound);
-        state.v = state.pid.integral() + state.pd + state.offset + sample.u_f;
+        self.law.bound_integral(&mut state.law, self.integral_bound);
+        state.v = L::integral(&state.law) + state.pd + state.offset + sample.u_f;
         Status::INHIBITED.when(allowed != increment)
     }
 
@@ -176,7 +181,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// is there.
     fn open(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
         sample: &Checked<T>,
         verdict: Verdict,
@@ -193,7 +198,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         } else {
             self.setpoint.ramp(&mut state.r, state.r_asked);
         }
-        state.pd = self.pid.filter(&mut state.pid, self.seen(state.r.value(), sample.y));
+        state.pd = self.law.filter(&mut state.law, self.seen(state.r.value(), sample.y), sample.own);
         state.v = target.unwrap_or(state.u.value());
         let step = if sample.mode == Mode::Fallback { Some(self.guard.fallback_output().1) } else { None };
         (Status::NONE, step)
@@ -203,7 +208,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     #[inline(always)]
     fn limit_output(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         wanted: T,
         slowest: Option<T>,
     ) -> Limited<T> {
@@ -228,11 +233,11 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
 
     /// The anti-windup correction for the sample before \[u\].
     #[inline(always)]
-    fn unwind(&self, state: &ControllerState<T, C::State>, sample: &Checked<T>) -> T {
-        self.anti_windup.correction(state.pid.increment(), state.v, sample.applied)
+    fn unwind(&self, state: &ControllerState<T, C::State, L::State>, sample: &Checked<T>) -> T {
+        self.anti_windup.correction(L::last_increment(&state.law), state.v, sample.applied)
     }
 
-    /// What the PID sees of a set-point and a measurement.
+    /// What the law sees of a set-point and a measurement.
     #[inline(always)]
     pub(super) fn seen(&self, r: T, y: T) -> PidInput<T> {
         PidInput { r, y: self.deadband.apply(r, y) }
@@ -246,13 +251,18 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     }
 
     /// The set-point as `mode` asks for it in this sample.
-    fn asked_by(&self, mode: Mode, state: &ControllerState<T, C::State>, input: &ControllerInput<T>) -> T {
+    fn asked_by(
+        &self,
+        mode: Mode,
+        state: &ControllerState<T, C::State, L::State>,
+        input: &ControllerInput<T>,
+    ) -> T {
         self.setpoint_of(mode, input).unwrap_or(state.r_asked)
     }
 
     fn take_setpoint_and_offset(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
     ) -> Status {
         let mut status = Status::NONE;
@@ -287,17 +297,22 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
 
     /// Takes the compensator in or out of the sum without a bump; gives what it adds.
     #[inline(always)]
-    fn use_compensator(&self, state: &mut ControllerState<T, C::State>, wanted: bool, u_f: T) -> T {
+    fn use_compensator(&self, state: &mut ControllerState<T, C::State, L::State>, wanted: bool, u_f: T) -> T {
         if state.compensating != wanted {
             state.compensating = wanted;
-            state.pid.shift_integral(if wanted { -u_f } else { u_f });
+            L::shift(&mut state.law, if wanted { -u_f } else { u_f });
         }
         state.u_f = if wanted { u_f } else { T::ZERO };
         state.u_f
     }
 
     /// The first good sample of a zeroed state. Without a usable set-point the loop stays at the measurement.
-    fn start(&self, state: &mut ControllerState<T, C::State>, input: &ControllerInput<T>, applied: T) {
+    fn start(
+        &self,
+        state: &mut ControllerState<T, C::State, L::State>,
+        input: &ControllerInput<T>,
+        applied: T,
+    ) {
         let asked = self.setpoint_of(input.mode, input).map_or(input.y, |r| self.setpoint.into_range(r));
         self.settle(state, self.setpoint.start(asked, input.y), input.y, applied);
         state.r_asked = self.setpoint.into_range(asked);
@@ -307,10 +322,10 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     }
 
     /// The first good sample after a long time without: everything at rest at the measurement and the applied output.
-    fn resettle(&self, state: &mut ControllerState<T, C::State>, y: T, applied: T) {
+    fn resettle(&self, state: &mut ControllerState<T, C::State, L::State>, y: T, applied: T, own: T) {
         self.compensator.resettle(&mut state.compensator, y);
         let seen = self.seen(state.r.value(), y);
-        self.pid.settle(&mut state.pid, seen, applied);
+        self.law.settle(&mut state.law, seen, own);
         state.u.set(applied);
         state.v = applied;
         state.mode = Mode::Hold;
@@ -319,7 +334,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     /// A zeroed state that has not seen a good measurement: the modes that need none work, the others hold.
     fn without_measurement(
         &self,
-        state: &mut ControllerState<T, C::State>,
+        state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
         applied: T,
         status: Status,
@@ -342,7 +357,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
     #[inline(always)]
     fn output(
         &self,
-        state: &ControllerState<T, C::State>,
+        state: &ControllerState<T, C::State, L::State>,
         estimate: CompensatorOutput<T>,
         status: Status,
     ) -> ControllerOutput<T> {
@@ -353,7 +368,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         ControllerOutput {
             u: state.u.value(),
             v: state.v,
-            i: state.pid.integral(),
+            i: L::integral(&state.law),
             pd: state.pd,
             u_f: estimate.u_f,
             d_hat: estimate.d_hat,

@@ -324,12 +324,7 @@ impl<T: Real> PidState<T> {
     /// Keeps the integral term within `-most..=most`.
     #[inline(always)]
     pub(crate) fn bound_integral(&mut self, most: T) {
-        let i = self.integral.value();
-        // Written so that a NaN, which no sum of checked numbers gives, could not stay either.
-        let inside = i.magnitude() <= most;
-        if !inside {
-            self.integral.set(i.clamp_to(-most, most));
-        }
+        self.integral.keep_within(most);
     }
 
     /// Size of the integral term, its carry and its last increment together.
