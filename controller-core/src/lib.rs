@@ -61,7 +61,7 @@ pub mod snapshot;
 mod status;
 
 pub use accumulator::Accumulator;
-pub use adrc::{Adrc, AdrcConfig, AdrcInput, AdrcOutput, AdrcState};
+pub use adrc::{Adrc, AdrcCoefficients, AdrcConfig, AdrcInput, AdrcOutput, AdrcState};
 pub use alarm::{AlarmConfig, Alarms};
 pub use anti_windup::{AntiWindup, AntiWindupConfig};
 pub use compensator::{

@@ -28,6 +28,8 @@
 
 pub mod areas;
 #[cfg(feature = "std")]
+pub mod assessment;
+#[cfg(feature = "std")]
 pub mod batch134;
 #[cfg(feature = "std")]
 pub mod design;
@@ -37,9 +39,9 @@ mod frequency;
 #[cfg(feature = "std")]
 pub mod hold;
 #[cfg(feature = "std")]
-pub mod margins;
-pub mod assessment;
 pub mod identification;
+#[cfg(feature = "std")]
+pub mod margins;
 #[cfg(feature = "std")]
 pub mod model;
 pub mod refusal;

@@ -58,6 +58,24 @@ pub struct Adrc<T> {
     ts: T,
 }
 
+/// The coefficients of an [`Adrc`] as numbers: what an export writes and what an analysis of the deployed law reads. The
+/// difference equation is that of [`Adrc`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AdrcCoefficients<T> {
+    /// `b0*ts^2` [y/u].
+    pub g: T,
+    /// Share of the innovation in `z1`.
+    pub l1: T,
+    /// Share of the innovation in `w`.
+    pub l2: T,
+    /// Share of the innovation in `d` [u/y].
+    pub l3: T,
+    /// `kp/b0` [u/y].
+    pub kp: T,
+    /// `kd/(b0*ts)` [u/y].
+    pub kd: T,
+}
+
 /// State of an [`Adrc`]: signals only.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AdrcState<T> {
@@ -185,6 +203,13 @@ impl<T: Real> Adrc<T> {
             state.w.set(state.w.value() / old.ts * self.ts);
         }
         before - self.feedback(state, r)
+    }
+
+    /// The coefficients, for export and analysis.
+    #[must_use]
+    pub const fn coefficients(&self) -> AdrcCoefficients<T> {
+        let Self { g, l1, l2, l3, kp, kd, .. } = *self;
+        AdrcCoefficients { g, l1, l2, l3, kp, kd }
     }
 
     /// Gain from a step of `y` to the output in the same sample [u/y], as a size:

@@ -18,4 +18,4 @@ mod law;
 mod poles;
 
 pub use config::AdrcConfig;
-pub use law::{Adrc, AdrcInput, AdrcOutput, AdrcState};
+pub use law::{Adrc, AdrcCoefficients, AdrcInput, AdrcOutput, AdrcState};

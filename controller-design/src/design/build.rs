@@ -6,8 +6,8 @@ use super::{
     Sampled,
 };
 use crate::areas::Areas;
-use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
 use crate::margins::Margins;
+use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
 use crate::model::TransferFunction;
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
 use crate::rules::reduction::Reduced;
@@ -62,21 +62,27 @@ pub fn design_with_areas(
 
 /// What a rule leaves behind besides the law.
 #[derive(Default)]
-struct Made {
+pub(super) struct Made {
     areas: Option<Areas>,
-    model: Option<RuleModel>,
+    pub(super) model: Option<RuleModel>,
     noise: Noise,
     iae_load: Option<f64>,
     warnings: Warnings,
 }
 
-struct Job<'a> {
+impl Made {
+    pub(super) fn note(&mut self, warning: Warning) {
+        warn(&mut self.warnings, warning);
+    }
+}
+
+pub(super) struct Job<'a> {
     plant: &'a TransferFunction,
     /// The plant behind the latency.
-    delayed: TransferFunction,
+    pub(super) delayed: TransferFunction,
     measured: Option<&'a Areas>,
-    request: &'a Request,
-    made: Made,
+    pub(super) request: &'a Request,
+    pub(super) made: Made,
 }
 
 impl Job<'_> {
@@ -87,15 +93,16 @@ impl Job<'_> {
             Method::DeMomi => self.with_estimator(),
             Method::PiMs => self.within_ms().map(plain),
             Method::Dob => self.with_observer(),
-            _ => Err(Refusal::NoSolution {
-                why: "the rule is not part of this version",
-                help: "use another one",
-            }),
+            Method::PiIae => Err(Refusal::NoSolution { why: "not yet", help: "" }),
+            Method::Ah => self.kappa_tau(),
+            Method::Adrc => self.adrc(),
+            Method::Amigo => self.amigo(),
+            Method::Simc => self.simc(),
         }
     }
 
     /// The areas that the rules use.
-    fn areas(&mut self) -> Result<Areas, Refusal> {
+    pub(super) fn areas(&mut self) -> Result<Areas, Refusal> {
         let areas = match self.measured {
             // A delay in front of the process is one in front of its response.
             Some(areas) => areas.delayed(self.request.latency),
@@ -219,13 +226,13 @@ impl Job<'_> {
         Ok(Law::Pid { pid, estimator: None, observer: Some(observer) })
     }
 
-    fn warn(&mut self, warning: Warning) {
-        warn(&mut self.made.warnings, warning);
+    pub(super) fn warn(&mut self, warning: Warning) {
+        self.made.note(warning);
     }
 }
 
 /// A PID alone.
-fn plain(pid: PidConfig) -> Law {
+pub(super) fn plain(pid: PidConfig) -> Law {
     Law::Pid { pid, estimator: None, observer: None }
 }
 
@@ -244,7 +251,10 @@ fn late(plant: &TransferFunction, latency: f64) -> Result<TransferFunction, Refu
 
 /// The continuous loop of a law.
 fn continuous(plant: &TransferFunction, law: &Law, latency: f64) -> Result<ContinuousLoop, Refusal> {
-    let Law::Pid { pid, estimator, observer } = law;
+    let (pid, estimator, observer) = match law {
+        Law::Pid { pid, estimator, observer } => (pid, estimator, observer),
+        Law::Adrc(config) => return Ok(ContinuousLoop::of_adrc(plant, config)?.with_latency(latency)),
+    };
     let mut made = ContinuousLoop::new(plant, pid).with_latency(latency);
     if let Some(estimator) = estimator {
         made = made.with_estimator(estimator)?;
@@ -261,12 +271,16 @@ fn sampled(plant: &TransferFunction, law: &Law, request: &Request) -> Result<Sam
         why: "the law cannot be built for this sampling period",
         help: "choose a shorter ts, so that every time constant is at least ts/1000 and tf at least ts/2",
     };
-    let Law::Pid { pid, estimator, observer } = law;
-    let estimator = estimator.as_ref().map(|estimator| estimator.to_compensator(request.latency));
-    let observer = observer.as_ref().map(|observer| observer.to_compensator(request.latency));
-    let made = match estimator.or(observer) {
-        Some(compensator) => DiscreteLaw::with_compensator(pid, &compensator, request.ts),
-        None => DiscreteLaw::new(pid, request.ts),
+    let made = match law {
+        Law::Pid { pid, estimator, observer } => {
+            let estimator = estimator.as_ref().map(|estimator| estimator.to_compensator(request.latency));
+            let observer = observer.as_ref().map(|observer| observer.to_compensator(request.latency));
+            match estimator.or(observer) {
+                Some(compensator) => DiscreteLaw::with_compensator(pid, &compensator, request.ts),
+                None => DiscreteLaw::new(pid, request.ts),
+            }
+        }
+        Law::Adrc(config) => DiscreteLaw::adrc(config, request.ts),
     };
     let made = made.map_err(|_| LONG)?;
     let made = DiscreteLoop::new(plant, made, request.latency)?;

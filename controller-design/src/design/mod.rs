@@ -13,6 +13,7 @@
 
 mod build;
 mod method;
+mod models;
 mod request;
 mod robust;
 
@@ -24,7 +25,7 @@ use crate::Warnings;
 use crate::areas::Areas;
 use crate::margins::{Margins, NoiseGains};
 use crate::model::TransferFunction;
-use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
+use controller_core::{AdrcConfig, EstimatorConfig, ObserverConfig, PidConfig};
 
 /// What runs: the configuration of the blocks.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +39,8 @@ pub enum Law {
         /// Its disturbance observer.
         observer: Option<ObserverConfig>,
     },
+    /// Active disturbance rejection control.
+    Adrc(AdrcConfig),
 }
 
 /// A controller for a plant, and what can be said of it.

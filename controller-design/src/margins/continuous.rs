@@ -1,8 +1,9 @@
 //! The loop of a continuous design.
 
-use controller_core::PidConfig;
 use controller_core::compensator::{EstimatorConfig, ObserverConfig};
+use controller_core::{AdrcConfig, PidConfig};
 
+use super::adrc::AdrcPaths;
 use super::scan::{Point, Scan};
 use super::{Margins, Paths};
 use crate::Refusal;
@@ -50,6 +51,7 @@ pub struct ContinuousLoop {
     gains: [f64; 3],
     tf: f64,
     paths: Option<Paths>,
+    adrc: Option<AdrcPaths>,
     latency: f64,
     extra_delay: f64,
 }
@@ -64,6 +66,7 @@ impl ContinuousLoop {
             gains: pid.signed_gains(),
             tf: pid.tf,
             paths: None,
+            adrc: None,
             latency: 0.0,
             extra_delay: 0.0,
         }
@@ -86,6 +89,27 @@ impl ContinuousLoop {
     pub fn with_observer(mut self, observer: &ObserverConfig) -> Result<Self, Refusal> {
         self.paths = Some(Paths::new(&observer.to_compensator(0.0))?);
         Ok(self)
+    }
+
+    /// The loop of a plant and an active disturbance rejection controller: all of its feedback counts as
+    /// [`compensator`](Self::compensator), the PID is none. Its observer knows of no dead time.
+    ///
+    /// # Errors
+    /// An observer that is not stable, a gain that is not above 0: see [`AdrcConfig`].
+    ///
+    /// ```
+    /// use controller_core::AdrcConfig;
+    /// use controller_design::margins::ContinuousLoop;
+    /// use controller_design::model::parse;
+    /// // The plant that the law assumes: S of the loop with a fast observer tends to that of the state feedback.
+    /// let plant = parse("5/s^2").expect("a valid plant");
+    /// let law = AdrcConfig::from_bandwidths(5.0, 1.0, 1e4);
+    /// let made = ContinuousLoop::of_adrc(&plant, &law).expect("a valid law");
+    /// assert!(made.margins().expect("stable").ms < 1.001);
+    /// ```
+    pub fn of_adrc(plant: &TransferFunction, config: &AdrcConfig) -> Result<Self, Refusal> {
+        let adrc = AdrcPaths::new(config)?;
+        Ok(Self { adrc: Some(adrc), ..Self::new(plant, &PidConfig::default()) })
     }
 
     /// The same loop with a time \[s\] from reading `y` to acting `u` that the compensator knows of.
@@ -119,7 +143,11 @@ impl ContinuousLoop {
     /// `(C_u, C_y)` at `s = j*omega`; zeros without a compensator.
     #[must_use]
     pub fn compensator(&self, omega: f64) -> (Complex, Complex) {
-        self.paths.as_ref().map_or((Complex::ZERO, Complex::ZERO), |paths| paths.at(omega, self.latency))
+        match (&self.adrc, &self.paths) {
+            (Some(adrc), _) => adrc.at(omega),
+            (None, Some(paths)) => paths.at(omega, self.latency),
+            (None, None) => (Complex::ZERO, Complex::ZERO),
+        }
     }
 
     /// All of the feedback, `-u/y = (C - C_y)/(1 - C_u)`.
@@ -267,6 +295,9 @@ impl ContinuousLoop {
         features.time(root(1.0 / (gain * ki), integrators + 1));
         if integrators > 0 {
             features.time(root(1.0 / (gain * kp), integrators));
+        }
+        if let Some(adrc) = &self.adrc {
+            adrc.features(&mut features);
         }
         if let Some(paths) = &self.paths {
             paths.features(&mut features, self.latency);

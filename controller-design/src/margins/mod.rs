@@ -17,6 +17,7 @@
 //! assert!((margins.delay_margin - (core::f64::consts::PI - 1.0)).abs() < 1e-12);
 //! ```
 
+mod adrc;
 mod continuous;
 pub mod discrete;
 mod measure;
@@ -24,9 +25,8 @@ mod paths;
 mod scan;
 
 pub use continuous::ContinuousLoop;
-pub(crate) use paths::{Paths, lead, split_zeros};
 pub use discrete::{DiscreteLaw, DiscreteLoop, LoopResponse, NoiseGains};
-pub(crate) use paths::Paths;
+pub(crate) use paths::{Paths, lead, split_zeros};
 
 /// The distances of a stable loop from instability; frequencies in rad/s.
 ///

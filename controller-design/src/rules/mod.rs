@@ -11,6 +11,7 @@
 //!
 //! * [`pi_ms`]: PI of the largest integral gain within a maximum sensitivity.
 //! * [`observer`]: the disturbance observer beside a PI.
+//!
 //! From a first-order, second-order or integrating model with dead time:
 //!
 //! * [`fits`]: fits to the PI with the least IAE after a load step.
@@ -35,9 +36,9 @@ pub mod observer;
 #[cfg(feature = "std")]
 pub mod pi_ms;
 pub mod reduction;
+pub mod simc;
 
 #[cfg(feature = "std")]
 pub use observer::ObserverDesign;
 #[cfg(feature = "std")]
 pub use pi_ms::PiMs;
-pub mod simc;

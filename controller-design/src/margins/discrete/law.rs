@@ -3,7 +3,8 @@
 use std::vec::Vec;
 
 use controller_core::{
-    AnyCompensator, Coefficients, CompensatorConfig, ConfigErrors, Pid, PidCoefficients, PidConfig,
+    Adrc, AdrcCoefficients, AdrcConfig, AnyCompensator, Coefficients, CompensatorConfig, ConfigErrors, Pid,
+    PidCoefficients, PidConfig,
 };
 
 use crate::hold::{delay_by, minus_one};
@@ -29,9 +30,15 @@ use crate::model::Complex;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiscreteLaw {
-    pid: PidCoefficients<f64>,
+    kind: Kind,
     compensator: Option<AnyCompensator<f64, Vec<f64>>>,
     ts: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Pid(PidCoefficients<f64>),
+    Adrc(AdrcCoefficients<f64>),
 }
 
 impl DiscreteLaw {
@@ -40,7 +47,8 @@ impl DiscreteLaw {
     /// # Errors
     /// Every fault of [`PidConfig::validate`].
     pub fn new(pid: &PidConfig, ts: f64) -> Result<Self, ConfigErrors> {
-        Ok(Self { pid: Pid::<f64>::new(pid, ts)?.coefficients(), compensator: None, ts })
+        let kind = Kind::Pid(Pid::<f64>::new(pid, ts)?.coefficients());
+        Ok(Self { kind, compensator: None, ts })
     }
 
     /// A PID with a disturbance compensator, whose configuration carries the loop's latency.
@@ -69,7 +77,16 @@ impl DiscreteLaw {
             (Err(faults), _) | (_, Err(faults)) => return Err(faults),
         };
         compensator.check_sign(pid)?;
-        Ok(Self { pid: law.coefficients(), compensator: Some(compensation), ts })
+        Ok(Self { kind: Kind::Pid(law.coefficients()), compensator: Some(compensation), ts })
+    }
+
+    /// A second-order ADRC, discretised for the sampling period `ts` \[s\].
+    ///
+    /// # Errors
+    /// Every fault of [`AdrcConfig::validate`]; a coefficient out of range.
+    pub fn adrc(config: &AdrcConfig, ts: f64) -> Result<Self, ConfigErrors> {
+        let kind = Kind::Adrc(Adrc::<f64>::new(config, ts)?.coefficients());
+        Ok(Self { kind, compensator: None, ts })
     }
 
     /// The sampling period \[s\].
@@ -81,14 +98,18 @@ impl DiscreteLaw {
     /// Whether there is an integral term.
     #[must_use]
     pub fn integrates(&self) -> bool {
-        self.pid.ki_now != 0.0 || self.pid.ki_before != 0.0
+        matches!(self.kind, Kind::Pid(pid) if pid.ki_now != 0.0 || pid.ki_before != 0.0)
     }
 
-    /// `C(exp(j*theta))` of the PID alone, from `-y` to `u`; `theta = w*ts` in rad, above 0 and up to pi.
+    /// `C(exp(j*theta))` of the PID alone, from `-y` to `u`; `theta = w*ts` in rad, above 0 and up to pi. Of an ADRC its
+    /// `-C_y`.
     #[must_use]
     pub fn pid(&self, theta: f64) -> Complex {
         let z_minus_one = minus_one(theta);
-        let c = &self.pid;
+        let c = match &self.kind {
+            Kind::Pid(pid) => pid,
+            Kind::Adrc(law) => return Estimator::new(law, theta).from_y(law),
+        };
         let tap = Tap::new(c.g, z_minus_one);
         let filtered = tap.value * c.p_y + tap.difference * c.h_y;
         if !self.integrates() {
@@ -102,6 +123,9 @@ impl DiscreteLaw {
     /// difference: an observer's vanishes at low frequencies.
     #[must_use]
     pub fn compensator(&self, theta: f64) -> (Complex, Complex) {
+        if let Kind::Adrc(law) = &self.kind {
+            return (Estimator::new(law, theta).own(law), Complex::ZERO);
+        }
         let Some(law) = &self.compensator else { return (Complex::ONE, Complex::ZERO) };
         let law = law.coefficients();
         let z_minus_one = minus_one(theta);
@@ -122,7 +146,10 @@ impl DiscreteLaw {
     /// The jump of the output in the same sample per unit of a jump of `-y` \[u/y\]: `C - C_y` for `z` to infinity.
     #[must_use]
     pub fn step_gain(&self) -> f64 {
-        let pid = self.pid.h_y + self.pid.ki_now;
+        let pid = match &self.kind {
+            Kind::Pid(pid) => pid.h_y + pid.ki_now,
+            Kind::Adrc(law) => law.kp * law.l1 + law.kd * law.l2 + law.l3,
+        };
         self.compensator.as_ref().map_or(pid, |law| {
             let law = law.coefficients();
             let tap = |_: f64| Tap { value: Complex::ZERO, difference: Complex::ONE };
@@ -133,7 +160,11 @@ impl DiscreteLaw {
 
     /// Gains of all lags and the samples of delay, for the choice of frequencies.
     pub(super) fn lags(&self) -> (Vec<f64>, usize) {
-        let mut gains = Vec::from([self.pid.g]);
+        let mut gains = match &self.kind {
+            Kind::Pid(pid) => Vec::from([pid.g]),
+            // About the poles of the observer and of the feedback.
+            Kind::Adrc(law) => Vec::from([law.l1 / 3.0, law.kp / law.kd, law.kd * law.g]),
+        };
         let mut delay = 0;
         if let Some(law) = &self.compensator {
             let law = law.coefficients();
@@ -148,6 +179,52 @@ impl DiscreteLaw {
     #[must_use]
     pub fn compensates(&self) -> bool {
         self.compensator.is_some()
+    }
+}
+
+/// The state observer of an ADRC at one frequency. With `q = 1/z`, `n = 1 - q` and the innovation `e`
+///
+/// ```text
+/// P*e = n^3*y - g*q*n*(1+q)/2*u,   P = n^2*(n*(1-l1) + l1) + q*n*l2 + g*q*(1+q)/2*l3
+/// ```
+struct Estimator {
+    q: Complex,
+    n: Complex,
+    p: Complex,
+    /// `g*q*(1+q)/2`.
+    push: Complex,
+    /// `n*(n*(1-l1) + l1) + q*l2`.
+    rest: Complex,
+}
+
+impl Estimator {
+    fn new(law: &AdrcCoefficients<f64>, theta: f64) -> Self {
+        let z_minus_one = minus_one(theta);
+        let q = minus_one(-theta) + Complex::ONE;
+        // 1 - 1/z = (z - 1)/z, without the difference.
+        let n = z_minus_one * q;
+        let push = q * (q + Complex::ONE) * (0.5 * law.g);
+        let rest = n * (n * (1.0 - law.l1) + Complex::real(law.l1)) + q * law.l2;
+        Self { q, n, p: n * rest + push * law.l3, push, rest }
+    }
+
+    /// `-C_y`: from `-y` to `u`.
+    fn from_y(&self, law: &AdrcCoefficients<f64>) -> Complex {
+        let Self { q, n, p, .. } = *self;
+        let square = n * n;
+        let z1 = Complex::ONE - square * n / p * (1.0 - law.l1);
+        let w = (q * n * (law.g * law.l3) + square * law.l2) / p;
+        let d = square / p * law.l3;
+        z1 * law.kp + w * law.kd + d
+    }
+
+    /// `1 - C_u`, which vanishes at low frequencies.
+    fn own(&self, law: &AdrcCoefficients<f64>) -> Complex {
+        let Self { q, n, p, push, rest } = *self;
+        let e = n * push / p;
+        let z1 = e * (1.0 - law.l1);
+        let w = (q * rest * law.g - push * law.l2) / p;
+        n * rest / p + z1 * law.kp + w * law.kd
     }
 }
 
