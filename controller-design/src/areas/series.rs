@@ -83,10 +83,10 @@ pub(super) fn areas<P: AsRef<[f64]>>(
         });
     }
     if !(dead_time >= 0.0 && dead_time.is_finite()) {
-        return Err(out_of_range("dead_time", dead_time, 0.0, f64::MAX));
+        return Err(out_of_range("dead_time", dead_time, 0.0, f64::INFINITY));
     }
     if let Some(&value) = all().flatten().find(|c| !c.is_finite()) {
-        return Err(out_of_range("a coefficient", value, f64::MIN, f64::MAX));
+        return Err(out_of_range("a coefficient", value, f64::NEG_INFINITY, f64::INFINITY));
     }
     let unit = all().map(time_exponent).chain(exponent_of_time(dead_time)).max().unwrap_or(NO_TIME);
     let unit = if unit == NO_TIME { 0 } else { unit };

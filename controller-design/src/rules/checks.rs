@@ -21,7 +21,7 @@ pub(super) fn positive(parameter: &'static str, value: f64) -> Result<(), Refusa
     if value > 0.0 && value.is_finite() {
         Ok(())
     } else {
-        Err(Refusal::OutOfRange { parameter, value, min: 0.0, max: f64::MAX })
+        Err(Refusal::OutOfRange { parameter, value, min: 0.0, max: f64::INFINITY })
     }
 }
 
@@ -30,7 +30,7 @@ pub(super) fn not_negative(parameter: &'static str, value: f64) -> Result<(), Re
     if value >= 0.0 && value.is_finite() {
         Ok(())
     } else {
-        Err(Refusal::OutOfRange { parameter, value, min: 0.0, max: f64::MAX })
+        Err(Refusal::OutOfRange { parameter, value, min: 0.0, max: f64::INFINITY })
     }
 }
 
