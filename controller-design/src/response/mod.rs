@@ -59,6 +59,15 @@ impl Observer {
     pub fn new(plant: &TransferFunction, alpha: f64) -> Self {
         Self { alpha, order: realisation::filter_order(plant) }
     }
+
+    /// Integral of the error under a unit ramp of the load, as a size:
+    /// `(order*alpha + dead_time + sum delta)/|ki|`, Tena et al. 2022 eq. (33), and the part of it that no `alpha`
+    /// takes away.
+    pub(crate) fn ramp_ie(&self, plant: &TransferFunction, pid: &PidConfig) -> (f64, f64) {
+        let least = realisation::unavoidable(plant);
+        let ki = pid.ki.abs();
+        ((self.order as f64 * self.alpha + least) / ki, least / ki)
+    }
 }
 
 /// Indices of the error `e = r - y` with `r = 0`, from the load at `t = 0` to infinity. Units: those of y for a

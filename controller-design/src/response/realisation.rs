@@ -94,6 +94,14 @@ pub(super) fn filter_order(plant: &TransferFunction) -> usize {
     plant.order().saturating_sub(left)
 }
 
+/// Dead time plus the time constants of the zeros in the right half-plane: what an observer cannot hasten \[s\].
+pub(super) fn unavoidable(plant: &TransferFunction) -> f64 {
+    let zeros = split(plant.num(), 1.0);
+    let real: f64 = zeros.real.iter().map(|b| (-b).max(0.0)).sum();
+    let pairs: f64 = zeros.pairs.iter().map(|p| (-p.a1).max(0.0)).sum();
+    plant.dead_time() + real + pairs
+}
+
 /// The sign that `ki` must have: that of the gain, turned by every real pole in the right half-plane.
 pub(super) fn sign_of_ki(plant: &TransferFunction) -> f64 {
     let turned = split(plant.den(), 1.0).real.iter().filter(|t| **t < 0.0).count() % 2 == 1;

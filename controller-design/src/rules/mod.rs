@@ -40,5 +40,15 @@ pub mod simc;
 
 #[cfg(feature = "std")]
 pub use observer::ObserverDesign;
+mod observer_indices;
+#[cfg(feature = "std")]
+mod pi_iae;
+#[cfg(feature = "std")]
+mod pi_ms;
+
+#[cfg(feature = "std")]
+pub use observer_indices::{Wish, alpha_for};
+#[cfg(feature = "std")]
+pub use pi_iae::PiIae;
 #[cfg(feature = "std")]
 pub use pi_ms::PiMs;
