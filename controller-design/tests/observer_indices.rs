@@ -64,7 +64,8 @@ fn the_largest_alpha_is_found_where_indices_are_not_monotonic() {
             .map(|alpha| (alpha, with(l, alpha)))
             .collect();
         for share in [1.7, 1.45, 1.4, 1.2, 0.99, 0.9] {
-            let wishes: [(Wish, fn(&Indices) -> f64); 3] = [
+            type Index = fn(&Indices) -> f64;
+            let wishes: [(Wish, Index); 3] = [
                 (Wish::Iae(share * base.iae), |i| i.iae),
                 (Wish::Ise(share * base.ise), |i| i.ise),
                 (Wish::Itae(share * base.itae), |i| i.itae),

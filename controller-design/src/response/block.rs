@@ -71,6 +71,15 @@ impl Block {
         }
     }
 
+    pub(super) fn scale(&mut self, factor: f64) {
+        self.data.iter_mut().for_each(|a| *a *= factor);
+    }
+
+    /// Largest size of any entry.
+    pub(super) fn largest(&self) -> f64 {
+        self.data.iter().fold(0.0, |m, a| if a.abs() > m { a.abs() } else { m })
+    }
+
     /// Largest sum of sizes over a row.
     pub(super) fn norm(&self) -> f64 {
         let row = |i| (0..self.cols).map(|j| self.get(i, j).abs()).sum::<f64>();

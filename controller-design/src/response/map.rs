@@ -1,8 +1,5 @@
 //! What one element does to the loop: a linear map, found once and used for every element of that length.
 
-use std::vec;
-use std::vec::Vec;
-
 use super::block::Block;
 use super::nodes::{NODES, nodes};
 use super::realisation::Realisation;
@@ -21,7 +18,7 @@ pub(super) struct Map {
 }
 
 /// Terms of the series at most; with a norm of 1/2 the 24th is far below the last bit.
-const TERMS: usize = 28;
+pub(super) const TERMS: usize = 28;
 
 impl Map {
     /// The map of an element of `step`, which must be short: `step` times the norm of the equations at most 1/2.
@@ -37,22 +34,40 @@ impl Map {
                 equations.set(i, j, step * (loop_.a.get(i, j) + fed_back));
             }
         }
-        let mut next = vec![0.0; n];
-        for j in 0..n + inputs {
-            let mut powers: Vec<Vec<f64>> = vec![vec![0.0; n]];
-            if j < n {
-                powers[0][j] = 1.0;
-            }
-            for k in 0..TERMS {
-                let Some(last) = powers.last() else { break };
-                equations.apply(last, &mut next);
-                if j >= n && k < NODES {
-                    let input = step * nodes().forward[k][j - n];
-                    next.iter_mut().zip(&loop_.b).for_each(|(next, b)| *next += b * input);
+        // Taylor coefficients of the states over the element, all columns at once.
+        let mut term = Block::zeros(n, n + inputs);
+        for j in 0..n {
+            term.set(j, j, 1.0);
+        }
+        let outputs = [&loop_.k, &loop_.c];
+        for k in 0..TERMS {
+            let scale = term.largest();
+            for j in 0..n + inputs {
+                let (from, to) = (term.col(j), block.col_mut(j));
+                if k > 0 {
+                    to.iter_mut().zip(from).for_each(|(to, x)| *to += x);
                 }
-                powers.push(next.iter().map(|x| x / (k as f64 + 1.0)).collect());
+                for (signal, row) in outputs.iter().enumerate() {
+                    let value: f64 = from.iter().zip(row.iter()).map(|(x, c)| x * c).sum();
+                    let at = n + signal * NODES;
+                    for (to, power) in to[at..at + NODES].iter_mut().zip(&nodes().powers[k]) {
+                        *to += value * power;
+                    }
+                }
             }
-            fill(loop_, &powers, block.col_mut(j));
+            // The input's own series ends with the degree of its polynomial.
+            if k >= NODES && scale < 1e-19 {
+                break;
+            }
+            let mut next = equations.times(&term);
+            if k < NODES {
+                for j in 0..inputs {
+                    let input = step * nodes().forward[k][j];
+                    next.col_mut(n + j).iter_mut().zip(&loop_.b).for_each(|(next, b)| *next += b * input);
+                }
+            }
+            next.scale(1.0 / (k as f64 + 1.0));
+            term = next;
         }
         Self { block, states: n, changes: n }
     }
@@ -83,18 +98,9 @@ impl Map {
         let n = self.states;
         let inputs = self.block.cols - n;
         let (by_state, by_input) = (self.block.columns(0..n), self.block.columns(n..n + inputs));
-        let halves: [Block; 2] = core::array::from_fn(|half| {
-            let mut finer = Block::zeros(inputs, inputs);
-            for i in 0..inputs {
-                for j in 0..inputs {
-                    finer.set(i, j, nodes().halves[half][i][j]);
-                }
-            }
-            finer
-        });
         // All rows of the first half, then of the second, both by the states and inputs of the whole.
         let mut first = Block::zeros(self.block.rows, n + inputs);
-        let driven = halves.each_ref().map(|half| by_input.times(half));
+        let driven = nodes().finer.each_ref().map(|half| by_input.times(half));
         for j in 0..n {
             first.col_mut(j).copy_from_slice(self.block.col(j));
         }
@@ -139,23 +145,5 @@ impl Map {
             }
         }
         whole
-    }
-}
-
-/// A column of the map from the Taylor coefficients of the states over an element of length 1.
-fn fill(loop_: &Realisation, powers: &[Vec<f64>], column: &mut [f64]) {
-    let n = loop_.a.rows;
-    let along = |row: &[f64]| -> Vec<f64> {
-        powers.iter().map(|x| x.iter().zip(row).map(|(x, c)| x * c).sum()).collect()
-    };
-    for (i, change) in column.iter_mut().take(n).enumerate() {
-        *change = powers.iter().skip(1).rev().map(|x| x[i]).sum();
-    }
-    for (signal, row) in [&loop_.k, &loop_.c].into_iter().enumerate() {
-        let series = along(row);
-        for i in 0..NODES {
-            let x = i as f64 / 8.0;
-            column[n + signal * NODES + i] = series.iter().rev().fold(0.0, |sum, c| sum * x + c);
-        }
     }
 }

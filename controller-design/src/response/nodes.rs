@@ -5,6 +5,9 @@
 
 use std::sync::OnceLock;
 
+use super::block::Block;
+use super::map::TERMS;
+
 /// Nodes of an element, both ends included.
 pub(super) const NODES: usize = 9;
 
@@ -22,6 +25,10 @@ pub(super) struct Nodes {
     /// `halves[0][i][j]`: the polynomial of node j at the nodes of the first half of the element, `halves[1]` of
     /// the second.
     pub(super) halves: [[Values; NODES]; 2],
+    /// The same as matrices.
+    pub(super) finer: [Block; 2],
+    /// `powers[k][i]`: place of node i, from 0 to 1, to the power of k.
+    pub(super) powers: [Values; TERMS],
     /// Weights of the integral over an element of length 1 (Newton and Cotes).
     pub(super) weights: Values,
     /// Weights of the derivative at both ends, for an element of length 2.
@@ -56,6 +63,8 @@ impl Nodes {
             centred: [[0.0; NODES]; NODES],
             forward: [[0.0; NODES]; NODES],
             halves: [[[0.0; NODES]; NODES]; 2],
+            finer: core::array::from_fn(|_| Block::zeros(NODES, NODES)),
+            powers: [[1.0; NODES]; TERMS],
             weights: [0.0; NODES],
             ends: [[0.0; NODES]; 2],
         };
@@ -74,7 +83,13 @@ impl Nodes {
             for i in 0..NODES {
                 for half in 0..2 {
                     n.halves[half][i][j] = lagrange(j, CENTRE * half as f64 + 0.5 * i as f64);
+                    n.finer[half].set(i, j, n.halves[half][i][j]);
                 }
+            }
+        }
+        for k in 1..TERMS {
+            for i in 0..NODES {
+                n.powers[k][i] = n.powers[k - 1][i] * i as f64 / 8.0;
             }
         }
         n

@@ -18,6 +18,10 @@
 //! * [`ah`]: the kappa-tau PID; `inflexion` (with `std`) gives its apparent dead time.
 //! * [`amigo`], [`simc`]: the rules that are most used today.
 //! * [`adrc`]: second-order active disturbance rejection.
+//! From a transfer function (feature `std`):
+//!
+//! * `PiIae`: the PI with the least IAE after a step of the load, by optimisation.
+//! * `alpha_for`: the time constant of a disturbance observer for a wanted index.
 
 pub mod adrc;
 pub mod ah;

@@ -135,13 +135,15 @@ impl Scan<'_> {
                 Err(_) => break,
             };
             values.push(value);
-            if let [.., before, dip, after] = *values.as_slice() {
-                if dip < before && dip <= after && dip > 1.0 {
-                    let (place, bottom) = self.dip(alpha(i), alpha(i - 2))?;
-                    least = f64::min(least, bottom);
-                    if within(bottom) {
-                        return self.edge(place, alpha(i - 2));
-                    }
+            if let [.., before, dip, after] = *values.as_slice()
+                && dip < before
+                && dip <= after
+                && dip > 1.0
+            {
+                let (place, bottom) = self.dip(alpha(i), alpha(i - 2))?;
+                least = f64::min(least, bottom);
+                if within(bottom) {
+                    return self.edge(place, alpha(i - 2));
                 }
             }
             if within(value) {
