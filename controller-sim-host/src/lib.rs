@@ -2,6 +2,7 @@
 //!
 //! * [`scenario`]: what is to be run, read from TOML with every mistake at its line and column.
 //! * [`simulate`]: the run itself and its indices.
+//! * [`log`]: logs of real processes, read from CSV.
 //! * [`plant`]: plants that move exactly between the samples.
 //! * [`output`]: tables, JSON, CSV, messages with carets.
 //! * [`report`]: pages and pictures.
@@ -25,6 +26,7 @@ pub mod advise;
 pub mod cli;
 pub mod demo;
 pub mod design_file;
+pub mod log;
 pub mod output;
 pub mod plant;
 pub mod report;

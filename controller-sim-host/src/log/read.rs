@@ -1,0 +1,372 @@
+//! From the text of a log to its numbers.
+
+use super::cells::{Cell, Line, Separator, cells, is_comment, lines, number, separator};
+use super::choose::{Role, choose, words};
+use super::time::{self, Kind};
+use crate::scenario::{Fault, code, show_short};
+use std::ops::Range;
+
+/// Most rows of a log.
+const MOST_ROWS: usize = 10_000_000;
+/// Most remarks of one kind that are told one by one.
+const MOST_REMARKS: usize = 3;
+/// A step this much longer than the usual one is a gap.
+const GAP: f64 = 5.0;
+const DAY: f64 = 86_400.0;
+
+/// A log that was read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Log {
+    /// Times in s, not falling; of date-times since the first row.
+    pub times: Vec<f64>,
+    /// The other columns, in the order of their roles; `None` for one that is not there and need not be.
+    pub columns: Vec<Option<Vec<f64>>>,
+    /// What stands above the columns, the times first; empty without names.
+    pub titles: Vec<String>,
+    /// The units of the columns, the times first, where a line of units says so.
+    pub units: Vec<String>,
+    /// The line of each row, from 1.
+    pub lines: Vec<usize>,
+    /// What a person should know, with places in the text.
+    pub remarks: Vec<Fault>,
+}
+
+/// Reads the log `text` of the file `file`; the first of `roles` are the times.
+///
+/// # Errors
+/// The first fault, with its place in the text: no table, a column that is not there or not clear, a time that goes back,
+/// too many rows that cannot be used.
+///
+/// ```
+/// use controller_sim_host::log::{Column, Role, read};
+/// let text = "time;heater;T1\n[s];[%];[\u{b0}C]\n0;0;20,9\n0;50;20,9\n1,5;50;21,3\n";
+/// let roles = [Role::time(Column::Usual), Role::input(Column::Usual), Role::output(Column::Usual)];
+/// let log = read("log.csv", text, &roles).expect("a table");
+/// assert_eq!(log.times, [0.0, 0.0, 1.5]);
+/// assert_eq!(log.columns[1], Some(vec![20.9, 20.9, 21.3]));
+/// assert_eq!(log.units, ["s", "%", "\u{b0}C"]);
+/// ```
+pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
+    let table = Table::find(file, text)?;
+    let width = table.rows.iter().take(200).map(|row| row.cells.len()).max().unwrap_or(0);
+    let chosen = choose(file, &table.names, width, roles)
+        .map_err(|fault| Fault { span: table.place_of_names(), ..fault })?;
+    let title = |column: &Option<usize>, list: &[String]| -> String {
+        column.and_then(|c| list.get(c)).cloned().unwrap_or_default()
+    };
+    let mut log = Log {
+        columns: chosen.iter().skip(1).map(|c| c.map(|_| Vec::new())).collect(),
+        titles: chosen.iter().map(|c| title(c, &table.names)).collect(),
+        units: chosen.iter().map(|c| title(c, &table.units)).collect(),
+        ..Log::default()
+    };
+    let time_column = chosen.first().copied().flatten().unwrap_or(0);
+    let mut clock = Clock::new(&log);
+    let mut skipped: Vec<Fault> = Vec::new();
+    for row in &table.rows {
+        let mut values = Vec::with_capacity(chosen.len());
+        let found = table.time(row, time_column).and_then(|t| {
+            for column in chosen.iter().skip(1).flatten() {
+                values.push(table.value(row, *column)?);
+            }
+            Ok(t)
+        });
+        let (t, kind) = match found {
+            Ok(found) => found,
+            Err(fault) => {
+                skipped.push(fault);
+                continue;
+            }
+        };
+        let t = clock.seconds(t, kind).map_err(|why| table.fault(row, time_column, why))?;
+        if let Some(last) = log.times.last().filter(|last| t < **last) {
+            let message =
+                format!("the time {} is before {}, that of the row above", show_short(t), show_short(*last));
+            let fault = table.fault(row, time_column, message);
+            return Err(
+                fault.help("times must not go back: sort the rows, or name another column by `--time`")
+            );
+        }
+        log.times.push(t);
+        log.lines.push(row.number);
+        for (list, value) in log.columns.iter_mut().flatten().zip(values) {
+            list.push(value);
+        }
+    }
+    if log.times.is_empty() || 5 * skipped.len() > table.rows.len() {
+        return Err(skipped.into_iter().next().unwrap_or_else(|| table.empty()));
+    }
+    log.remarks = clock.remarks(&table);
+    tell(&mut log.remarks, skipped, "the row is left out: ", "more rows are left out");
+    log.remarks.extend(doubled(&log, &table));
+    let gaps = gaps(&log, &table);
+    tell(&mut log.remarks, gaps, "", "more gaps");
+    Ok(log)
+}
+
+/// The first faults as remarks, the others by their number.
+fn tell(remarks: &mut Vec<Fault>, faults: Vec<Fault>, before: &str, more: &str) {
+    let (count, last) = (faults.len(), faults.last().map_or(0..0, |fault| fault.span.clone()));
+    for mut fault in faults.into_iter().take(MOST_REMARKS) {
+        fault.message.insert_str(0, before);
+        remarks.push(fault);
+    }
+    if count > MOST_REMARKS {
+        let message = format!("{} {more}; this is the last one", count - MOST_REMARKS);
+        remarks.push(Fault::new(code::RECORDING, last, message));
+    }
+}
+
+/// How long the steps between rows usually are.
+fn usual_step(times: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).filter(|step| *step > 0.0).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+fn gaps(log: &Log, table: &Table<'_>) -> Vec<Fault> {
+    let usual = usual_step(&log.times);
+    let rows = log.times.windows(2).zip(&log.lines[1..]);
+    let long = rows.filter(|(t, _)| usual > 0.0 && t[1] - t[0] > GAP * usual);
+    long.map(|(t, line)| {
+        let message = format!(
+            "a gap of {} s from {} s on, where rows are usually {} s apart; the input counts as held in it",
+            show_short(t[1] - t[0]),
+            show_short(t[0]),
+            show_short(usual)
+        );
+        Fault::new(code::RECORDING, table.line(*line), message)
+    })
+    .collect()
+}
+
+/// Doubled time stamps: one may be a step, many are a clock that is too coarse.
+fn doubled(log: &Log, table: &Table<'_>) -> Option<Fault> {
+    let (mut count, mut first) = (0, 0);
+    for (times, line) in log.times.windows(2).zip(&log.lines[1..]) {
+        if times[0] == times[1] {
+            count += 1;
+            first = if count == 1 { *line } else { first };
+        }
+    }
+    let message = match count {
+        0 => return None,
+        1 => "the time stamp is that of the row above: the later row holds".to_owned(),
+        n => format!("{n} time stamps are those of the row above, this is the first: the later rows hold"),
+    };
+    let fault = Fault::new(code::RECORDING, table.line(first), message);
+    let many = 4 * count > log.times.len();
+    Some(if many { fault.help("record times with more digits: rows are lost") } else { fault })
+}
+
+/// Makes seconds of what stands in the column of the times.
+struct Clock {
+    scale: f64,
+    unit: Option<&'static str>,
+    kind: Option<Kind>,
+    first: f64,
+    last: f64,
+    days: f64,
+}
+
+impl Clock {
+    fn new(log: &Log) -> Self {
+        let title = log.titles.first().map_or(Vec::new(), |title| words(title));
+        let own = log.units.first().map_or(Vec::new(), |unit| words(unit));
+        let unit = time::unit(&own).or_else(|| time::unit(title.get(1..).unwrap_or(&[])));
+        Self {
+            scale: unit.map_or(1.0, |unit| unit.0),
+            unit: unit.map(|unit| unit.1),
+            kind: None,
+            first: 0.0,
+            last: f64::NEG_INFINITY,
+            days: 0.0,
+        }
+    }
+
+    fn seconds(&mut self, t: f64, kind: Kind) -> Result<f64, String> {
+        let begins = self.kind.is_none();
+        if *self.kind.get_or_insert(kind) != kind {
+            return Err("the time is written in another way than in the first row".to_owned());
+        }
+        match kind {
+            Kind::Number => return Ok(self.scale * t),
+            // After midnight.
+            Kind::Clock if t + self.days < self.last - 0.5 * DAY => self.days += DAY,
+            Kind::Clock | Kind::Date => {}
+        }
+        let t = t + self.days;
+        self.first = if begins { t } else { self.first };
+        self.last = t;
+        Ok(t - self.first)
+    }
+
+    fn remarks(&self, table: &Table<'_>) -> Vec<Fault> {
+        let of_unit = self.unit.filter(|_| self.kind == Some(Kind::Number));
+        let remark = of_unit.map(|unit| {
+            let message = format!("the times are taken to be {unit}");
+            Fault::new(code::RECORDING, table.place_of_names(), message)
+        });
+        remark.into_iter().collect()
+    }
+}
+
+/// The table in a text: where its rows are, and what stands above them.
+struct Table<'t> {
+    file: &'t str,
+    text: &'t str,
+    comma_is_decimal: bool,
+    spans: Vec<Range<usize>>,
+    names: Vec<String>,
+    names_at: Option<Range<usize>>,
+    units: Vec<String>,
+    rows: Vec<Line>,
+}
+
+impl<'t> Table<'t> {
+    fn find(file: &'t str, text: &'t str) -> Result<Self, Fault> {
+        let separator = separator(text);
+        let mut table = Self {
+            file,
+            text,
+            comma_is_decimal: separator != Separator::Char(','),
+            spans: Vec::new(),
+            names: Vec::new(),
+            names_at: None,
+            units: Vec::new(),
+            rows: Vec::new(),
+        };
+        let (mut above, mut comment): (Vec<(Line, Range<usize>)>, Option<Range<usize>>) = (Vec::new(), None);
+        for (number, span) in lines(text) {
+            table.spans.push(span.clone());
+            let line = &text[span.clone()];
+            if is_comment(line) {
+                comment = if table.rows.is_empty() { Some(span) } else { comment };
+                continue;
+            }
+            let cells = cells(text, &span, separator);
+            // A line of separators only is an empty line of a spreadsheet.
+            if cells.iter().all(|cell| cell.span.is_empty()) {
+                continue;
+            }
+            let row = Line { number, cells };
+            let numbers = row.cells.iter().filter(|cell| table.is_number(cell)).count();
+            if table.rows.is_empty() && (numbers == 0 || numbers < 2 && row.cells.len() > 2) {
+                above.push((row, span));
+                continue;
+            }
+            if table.rows.len() == MOST_ROWS {
+                let message = format!("`{file}` has more than {MOST_ROWS} rows");
+                return Err(Fault::new(code::RECORDING, span, message));
+            }
+            table.rows.push(row);
+        }
+        let Some(width) = table.rows.first().map(|row| row.cells.len()) else { return Err(table.empty()) };
+        table.head(above, comment, width, separator);
+        Ok(table)
+    }
+
+    /// Names and units from the lines above the rows.
+    fn head(
+        &mut self,
+        mut above: Vec<(Line, Range<usize>)>,
+        comment: Option<Range<usize>>,
+        width: usize,
+        separator: Separator,
+    ) {
+        above.retain(|(line, _)| line.cells.len() >= width);
+        let texts = |cells: &[Cell]| -> Vec<String> {
+            cells.iter().map(|cell| self.text[cell.span.clone()].to_owned()).collect()
+        };
+        let last = above.pop();
+        let before = above.pop();
+        let (names, units) = match (before, last) {
+            (Some(before), Some(last)) if are_units(&texts(&last.0.cells)) => (Some(before), Some(last)),
+            (_, last) => (last, None),
+        };
+        let units = units.map_or(Vec::new(), |(line, _)| texts(&line.cells));
+        let (names, at) = match (names, comment) {
+            (Some((line, span)), _) => (texts(&line.cells), Some(span)),
+            (None, Some(span)) => {
+                let start = self.text[span.clone()].find(|c: char| !"#%/ \t".contains(c));
+                let inner = span.start + start.unwrap_or(0)..span.end;
+                let cells = cells(self.text, &inner, separator);
+                let names = texts(&cells);
+                let fits = cells.len() == width && cells.iter().all(|cell| !self.is_number(cell));
+                if fits { (names, Some(span)) } else { (Vec::new(), None) }
+            }
+            (None, None) => (Vec::new(), None),
+        };
+        let bare = |unit: String| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned();
+        let units = units.into_iter().map(bare).collect();
+        (self.names, self.names_at, self.units) = (names, at, units);
+    }
+
+    fn is_number(&self, cell: &Cell) -> bool {
+        time::parse(&self.text[cell.span.clone()], self.comma_is_decimal || cell.quoted).is_some()
+    }
+
+    fn empty(&self) -> Fault {
+        Fault::new(code::RECORDING, 0..0, format!("`{}` has no rows of numbers", self.file))
+    }
+
+    fn line(&self, number: usize) -> Range<usize> {
+        number.checked_sub(1).and_then(|index| self.spans.get(index)).cloned().unwrap_or(0..0)
+    }
+
+    fn place_of_names(&self) -> Range<usize> {
+        let first = || self.rows.first().map_or(0..0, |row| self.line(row.number));
+        self.names_at.clone().unwrap_or_else(first)
+    }
+
+    /// A fault of a cell, or of the end of a row that is too short.
+    fn fault(&self, row: &Line, column: usize, why: impl Into<String>) -> Fault {
+        let end = self.line(row.number).end;
+        let span = row.cells.get(column).map_or(end..end, |cell| cell.span.clone());
+        let title = self.names.get(column).filter(|name| !name.is_empty());
+        let title = title
+            .map_or(format!("column {}", column + 1), |name| format!("column {} (`{name}`)", column + 1));
+        Fault::new(code::RECORDING, span, format!("{title}: {}", why.into()))
+    }
+
+    fn cell<'a>(&self, row: &'a Line, column: usize) -> Result<(&'a Cell, &'t str), Fault> {
+        match row.cells.get(column) {
+            Some(cell) if !cell.span.is_empty() => Ok((cell, &self.text[cell.span.clone()])),
+            Some(_) => Err(self.fault(row, column, "the cell is empty")),
+            None => Err(self.fault(row, column, format!("the row ends after column {}", row.cells.len()))),
+        }
+    }
+
+    fn time(&self, row: &Line, column: usize) -> Result<(f64, Kind), Fault> {
+        let (cell, text) = self.cell(row, column)?;
+        let parsed = time::parse(text, self.comma_is_decimal || cell.quoted);
+        parsed.filter(|(t, _)| t.abs() <= 1e15).ok_or_else(|| {
+            self.fault(row, column, "this is no time")
+                .help("times are seconds, `12:30:05.5` or `2024-03-01T12:30:05.5Z`")
+        })
+    }
+
+    fn value(&self, row: &Line, column: usize) -> Result<f64, Fault> {
+        let (cell, text) = self.cell(row, column)?;
+        match number(text, self.comma_is_decimal || cell.quoted) {
+            Some(x) if x.abs() <= 1e15 => Ok(x),
+            Some(_) => Err(self.fault(row, column, "the number is larger than 1e15")),
+            None => Err(self.fault(row, column, "this is no number")),
+        }
+    }
+}
+
+/// Whether the cells of a line are units, not names.
+fn are_units(cells: &[String]) -> bool {
+    const KNOWN: [&str; 36] = [
+        "s", "sec", "ms", "min", "h", "hh:mm:ss", "%", "\u{b0}c", "degc", "c", "k", "\u{b0}f", "degf", "v",
+        "mv", "a", "ma", "w", "kw", "bar", "mbar", "pa", "kpa", "mpa", "psi", "m", "mm", "cm", "l/min",
+        "l/s", "m3/h", "rpm", "1/min", "hz", "-", "",
+    ];
+    let is_unit = |cell: &String| {
+        let bracketed = cell.starts_with(['[', '(']) && cell.ends_with([']', ')']);
+        bracketed || KNOWN.contains(&&*cell.to_lowercase())
+    };
+    cells.iter().any(|cell| !cell.is_empty())
+        && 2 * cells.iter().filter(|cell| is_unit(cell)).count() > cells.len()
+}
