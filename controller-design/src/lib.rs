@@ -31,7 +31,6 @@ pub mod areas;
 pub mod assessment;
 #[cfg(feature = "std")]
 pub mod batch134;
-mod double;
 #[cfg(feature = "std")]
 pub mod design;
 mod double;

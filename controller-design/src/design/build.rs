@@ -11,7 +11,9 @@ use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
 use crate::model::TransferFunction;
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
 use crate::rules::reduction::Reduced;
-use crate::rules::{de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::ObserverDesign, pi_ms::PiMs};
+use crate::rules::{
+    PiIae, alpha_for, de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::ObserverDesign, pi_ms::PiMs,
+};
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
 use controller_core::{ObserverConfig, PidConfig};
@@ -93,7 +95,7 @@ impl Job<'_> {
             Method::DeMomi => self.with_estimator(),
             Method::PiMs => self.within_ms().map(plain),
             Method::Dob => self.with_observer(),
-            Method::PiIae => Err(Refusal::NoSolution { why: "not yet", help: "" }),
+            Method::PiIae => self.least_iae(),
             Method::Ah => self.kappa_tau(),
             Method::Adrc => self.adrc(),
             Method::Amigo => self.amigo(),
@@ -207,6 +209,10 @@ impl Job<'_> {
         let most = self.request.ms_max;
         let made = match (self.request.observer_filter, most) {
             (ObserverFilter::Time(alpha), _) => ObserverDesign::with_alpha(&self.delayed, &pid, alpha),
+            (ObserverFilter::Wanted(wish), _) => {
+                let alpha = alpha_for(&self.delayed, &pid, wish)?;
+                ObserverDesign::with_alpha(&self.delayed, &pid, alpha)
+            }
             (ObserverFilter::NoiseRatio(ratio), None) => {
                 ObserverDesign::with_noise_ratio(&self.delayed, &pid, ratio)
             }
@@ -224,6 +230,13 @@ impl Job<'_> {
         // The block adds the latency itself.
         observer.model.dead_time = self.plant.dead_time();
         Ok(Law::Pid { pid, estimator: None, observer: Some(observer) })
+    }
+
+    fn least_iae(&mut self) -> Result<Law, Refusal> {
+        let made = PiIae::new(&self.delayed)?;
+        made.warnings.iter().for_each(|warning| self.warn(*warning));
+        self.made.iae_load = Some(made.iae);
+        Ok(plain(made.pid))
     }
 
     pub(super) fn warn(&mut self, warning: Warning) {

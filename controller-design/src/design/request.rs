@@ -1,6 +1,7 @@
 //! What a design is asked for.
 
 use super::Method;
+use crate::rules::Wish;
 
 /// A wish for a controller. Times in seconds.
 ///
@@ -62,6 +63,8 @@ pub enum ObserverFilter {
     Time(f64),
     /// The noise gain `A_n` over that of the PI alone, above 1.
     NoiseRatio(f64),
+    /// The slowest filter with this index of the continuous loop after a unit load.
+    Wanted(Wish),
 }
 
 impl Request {

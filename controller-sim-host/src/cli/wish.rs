@@ -27,11 +27,14 @@ pub(super) struct Wish {
     #[arg(long, value_name = "M", value_parser = sensitivity)]
     ms_max: Option<f64>,
     /// Noise gain with the observer over that of the PI alone, above 1 (dob)
-    #[arg(long, value_name = "B", value_parser = positive, conflicts_with = "alpha")]
+    #[arg(long, value_name = "B", value_parser = positive, conflicts_with_all = ["alpha", "want"])]
     noise_ratio: Option<f64>,
     /// Time constant of the observer's filter \[s\] (dob)
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "want")]
     alpha: Option<f64>,
+    /// Index after a unit load to choose the observer's filter for (dob): iae, ise, itae, e_max, or ramp_ie for a ramp
+    #[arg(long, value_name = "INDEX=VALUE", value_parser = index)]
+    want: Option<Index>,
     /// From reading the measurement to acting with the output \[s\]
     #[arg(long, value_name = "S", value_parser = time, default_value_t = 0.0)]
     pub(super) latency: f64,
@@ -50,6 +53,7 @@ impl Wish {
         request.estimator_filter = filter.unwrap_or(request.estimator_filter);
         let filter =
             self.alpha.map(ObserverFilter::Time).or(self.noise_ratio.map(ObserverFilter::NoiseRatio));
+        let filter = filter.or(self.want.map(|Index(wish)| ObserverFilter::Wanted(wish)));
         request.observer_filter = filter.unwrap_or(request.observer_filter);
         request.ms = self.ms;
         request.ms_max = self.ms_max.or(ms_max);
@@ -68,6 +72,7 @@ impl Wish {
             ("--ms-max", self.ms_max.is_some(), &[DeMomi, Dob]),
             ("--noise-ratio", self.noise_ratio.is_some(), &[Dob]),
             ("--alpha", self.alpha.is_some(), &[Dob]),
+            ("--want", self.want.is_some(), &[Dob]),
         ];
         let idle = given.into_iter().filter(|(_, is_given, of)| *is_given && !of.contains(&method));
         idle.map(|(option, _, of)| {
@@ -76,6 +81,24 @@ impl Wish {
                 .help(format!("it belongs to {}", of.join(", ")))
         })
         .collect()
+    }
+}
+
+/// A wish for an index, as it is read.
+#[derive(Debug, Clone, Copy)]
+struct Index(controller_design::rules::Wish);
+
+fn index(text: &str) -> Result<Index, String> {
+    use controller_design::rules::Wish::{EMax, Iae, Ise, Itae, RampIe};
+    let (name, value) = text.split_once('=').ok_or("write INDEX=VALUE, for example `iae=0.5`")?;
+    let value = positive(value)?;
+    match name.trim() {
+        "iae" => Ok(Index(Iae(value))),
+        "ise" => Ok(Index(Ise(value))),
+        "itae" => Ok(Index(Itae(value))),
+        "e_max" => Ok(Index(EMax(value))),
+        "ramp_ie" => Ok(Index(RampIe(value))),
+        _ => Err("the index is one of iae, ise, itae, e_max, ramp_ie".to_owned()),
     }
 }
 

@@ -68,7 +68,18 @@ fn parameters(law: &Law) -> Vec<(&'static str, String)> {
     let mut row = |name: &'static str, value: f64, unit: &str| {
         rows.push((name, format!("{} {unit}", show_short(value)).trim_end().to_owned()));
     };
-    let Law::Pid { pid, estimator, observer } = law;
+    let (pid, estimator, observer) = match law {
+        Law::Pid { pid, estimator, observer } => (pid, estimator, observer),
+        Law::Adrc(a) => {
+            row("b0", a.b0, "y/(u s^2)");
+            row("kp", a.kp, "1/s^2");
+            row("kd", a.kd, "1/s");
+            row("beta1", a.beta1, "1/s");
+            row("beta2", a.beta2, "1/s^2");
+            row("beta3", a.beta3, "1/s^3");
+            return rows;
+        }
+    };
     let PidConfig { kp, ki, kd, tf, b, c, .. } = *pid;
     for (name, value, unit) in [
         ("kp", kp, "u/y"),

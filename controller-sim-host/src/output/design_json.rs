@@ -1,7 +1,7 @@
 //! A design as JSON; the names are those of the files and of the papers.
 
 use super::json::text;
-use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
+use controller_core::{AdrcConfig, EstimatorConfig, ObserverConfig, PidConfig};
 use controller_design::design::{Design, Law, RuleModel};
 use controller_design::margins::{Margins, NoiseGains};
 use serde::Serialize;
@@ -19,6 +19,7 @@ pub(super) struct Designed<'a> {
     model: Option<Model>,
     estimator: Option<Estimator>,
     observer: Option<Observer>,
+    adrc: Option<Adrc>,
     robustness: Robustness,
     sampled: Robustness,
     noise: Noise,
@@ -61,6 +62,16 @@ pub(super) struct Estimator {
 pub(super) struct Observer {
     alpha: f64,
     order: Option<usize>,
+}
+
+#[derive(Serialize)]
+pub(super) struct Adrc {
+    b0: f64,
+    kp: f64,
+    kd: f64,
+    beta1: f64,
+    beta2: f64,
+    beta3: f64,
 }
 
 /// Null where a margin cannot be used up.
@@ -114,6 +125,12 @@ impl From<&ObserverConfig> for Observer {
     }
 }
 
+impl From<&AdrcConfig> for Adrc {
+    fn from(a: &AdrcConfig) -> Self {
+        Self { b0: a.b0, kp: a.kp, kd: a.kd, beta1: a.beta1, beta2: a.beta2, beta3: a.beta3 }
+    }
+}
+
 impl From<&Margins> for Robustness {
     fn from(m: &Margins) -> Self {
         Self { ms: m.ms, mt: m.mt, gm: m.gm, pm_deg: m.pm_deg, delay_margin: m.delay_margin }
@@ -128,7 +145,10 @@ impl From<&NoiseGains> for SampledNoise {
 
 impl<'a> Designed<'a> {
     pub(super) fn new(made: &'a Design, saved: Option<&'a str>) -> Self {
-        let Law::Pid { pid, estimator, observer } = &made.law;
+        let (pid, estimator, observer, adrc) = match &made.law {
+            Law::Pid { pid, estimator, observer } => (Some(pid), estimator.as_ref(), observer.as_ref(), None),
+            Law::Adrc(adrc) => (None, None, None, Some(adrc)),
+        };
         Self {
             method: made.method.name(),
             source: made.method.source(),
@@ -137,7 +157,7 @@ impl<'a> Designed<'a> {
             latency: made.latency,
             areas: made.areas.map(|areas| areas.values()),
             filtered_areas: made.filtered_areas.map(|areas| areas.values()),
-            pid: Some(pid.into()),
+            pid: pid.map(Into::into),
             model: made.model.map(|RuleModel { gain, integrators, a1, a2, dead_time }| Model {
                 gain,
                 a1,
@@ -145,8 +165,9 @@ impl<'a> Designed<'a> {
                 dead_time,
                 integrators,
             }),
-            estimator: estimator.as_ref().map(Into::into),
-            observer: observer.as_ref().map(Into::into),
+            estimator: estimator.map(Into::into),
+            observer: observer.map(Into::into),
+            adrc: adrc.map(Into::into),
             robustness: (&made.robustness).into(),
             sampled: (&made.sampled.margins).into(),
             noise: Noise { kpidn: made.noise.kpidn, kden: made.noise.kden, an: made.noise.an },

@@ -132,5 +132,6 @@ pub(crate) fn apply(made: &Design, spec: &mut ControllerSpec) {
             let observer = observer.clone().map(CompensatorSpec::Observer);
             spec.compensator = estimator.or(observer).unwrap_or_default();
         }
+        Law::Adrc(_) => {}
     }
 }
