@@ -207,3 +207,18 @@ fn what_has_no_design_is_refused() {
     assert!(!design("1/((1+s)*(1+1e-4*s))", 2.0).warnings.is_empty());
     assert!(design("1/(1+s)^3", 2.0).warnings.is_empty());
 }
+
+/// Six zeros against an integrator: the gains are tiny, and so is the frequency where the loop crosses over.
+#[test]
+fn an_integrating_plant_with_a_crossover_far_below_its_time_constants() {
+    for text in
+        ["(1+0.05*s+s^2)*exp(-0.2*s)/(s*(1+0.01*s)^2)", "(1+10*s+100*s^2)*exp(-0.2*s)/(s*(1+0.01*s)^3)"]
+    {
+        for ms in [1.05, 1.4, 2.0] {
+            if let Ok(got) = PiMs::new(&plant(text), ms) {
+                let margins = ContinuousLoop::new(&plant(text), &got.pid).margins().expect("stable");
+                assert!((margins.ms - ms).abs() < 1e-7, "{text} {ms}: {got:?} {margins:?}");
+            }
+        }
+    }
+}

@@ -27,6 +27,11 @@ impl Response {
         }
     }
 
+    /// Poles at `s = 0` less zeros there.
+    pub(crate) fn integrators(&self) -> i32 {
+        self.integrators
+    }
+
     /// The value without dead time.
     pub(crate) fn rational(&self, omega: f64) -> Complex {
         let mut value = Complex::ONE;

@@ -6,6 +6,7 @@ mod search;
 use controller_core::PidConfig;
 
 use crate::frequency::{Features, Response};
+use crate::margins::ContinuousLoop;
 use crate::model::TransferFunction;
 use crate::{Refusal, Warning, Warnings};
 use region::Region;
@@ -16,6 +17,8 @@ const MS_RANGE: (f64, f64) = (1.01, 5.0);
 const AXIS: f64 = 1e-9;
 /// Share of the largest proportional gain below which the optimum is taken for pure integral control.
 const NO_GAIN: f64 = 1e-5;
+/// Share of the largest proportional gain from which the optimum lies at that limit.
+const AT_LIMIT: f64 = 0.98;
 /// `kp*gain` above which the result rests on how well the model's fast dynamics are known.
 const HIGH_GAIN: f64 = 50.0;
 
@@ -97,10 +100,19 @@ impl PiMs {
                 help: "use units in which gains and times are moderate",
             });
         }
+        // The encirclements, and the peak on a grid that the design knows nothing of.
+        let margins = ContinuousLoop::new(plant, &pid).margins()?;
+        if !((margins.ms / ms - 1.0).abs() < 1e-6) {
+            return Err(search::NONE);
+        }
         let mut warnings = Warnings::new();
         if plant.integrators() == 0 && found.kp > HIGH_GAIN {
             let text = "the gain rests on the model's fastest times; a lag or dead time left out would lower it much";
             let _ = warnings.push(Warning::Value { about: "kp*gain", value: found.kp, text });
+        }
+        if found.kp >= AT_LIMIT * region.kp_hi() {
+            let text = "the limit of proportional control; a resonance holds the gains down, more damping would help";
+            let _ = warnings.push(Warning::Value { about: "kp", value: pid.kp, text });
         }
         Ok(Self { pid, ms: found.ms, omega: found.omega, warnings })
     }

@@ -13,6 +13,8 @@ const TURN: f64 = 0.1;
 const TURNS: f64 = 60.0;
 /// The phase of the dead time up to which the logarithmic points alone show which frequencies matter, in rad.
 const SLOW_TURNS: f64 = 3.0;
+/// Least frequency for an integrating plant, as a share of the largest proportional gain.
+const SLOW: f64 = 1e-8;
 /// Slack when frequencies are left out: an ellipse counts as this much larger.
 const SLACK: f64 = 1.15;
 /// Slack where only the size of the plant's gain counts.
@@ -113,6 +115,14 @@ impl<'a> Region<'a> {
         region.limit_kp();
         if !region.kp_hi.is_finite() {
             return None;
+        }
+        let slow = SLOW * region.kp_hi;
+        if response.integrators() > 0 && slow > 0.0 && slow < low {
+            // An integrating plant crosses over at a frequency of the size of kp, however small kp is.
+            let more = features.logarithmic(slow, low, PER_DECADE);
+            let mut all: Vec<Ellipse> = more.iter().filter(|w| **w < low).filter_map(ellipse).collect();
+            all.append(&mut region.all);
+            (region.near, region.followed, region.all) = (all.clone(), vec![false; all.len()], all);
         }
         let ki_hi = 1.5 * super::search::rough_ki(&region);
         let delay = features.longest_delay();

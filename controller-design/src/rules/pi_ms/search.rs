@@ -18,6 +18,11 @@ const EXACT: f64 = 1e-10;
 /// Most rounds of adding the frequencies of peaks that the grid missed.
 const ROUNDS: usize = 16;
 
+pub(super) const NONE: Refusal = Refusal::NoSolution {
+    why: "no gains with this ms were found",
+    help: "check the plant; a resonance or a zero near the axis may leave no room for integral action",
+};
+
 /// Gains for the plant without its gain, and their peak.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Found {
@@ -50,10 +55,7 @@ pub(super) fn search(region: &mut Region<'_>) -> Result<Found, Refusal> {
     }
     match last {
         Some(found) if (found.ms / region.ms() - 1.0).abs() < 1e-8 => Ok(found),
-        _ => Err(Refusal::NoSolution {
-            why: "no gains with this ms were found",
-            help: "check the plant; a resonance or a zero near the axis may leave no room for integral action",
-        }),
+        _ => Err(NONE),
     }
 }
 
