@@ -2,8 +2,9 @@
 
 use controller_core::plant_model::PlantModel;
 use controller_core::{
-    Action, AlarmConfig, AntiWindupConfig, ControllerConfig, EstimatorConfig, FallbackAction, FallbackConfig,
-    FallbackReturn, IntegralRule, LimitConfig, Mode, ObserverConfig, PidConfig, SetpointConfig, Status,
+    Action, AdrcConfig, AlarmConfig, AntiWindupConfig, ControllerConfig, EstimatorConfig, FallbackAction,
+    FallbackConfig, FallbackReturn, IntegralRule, LimitConfig, Mode, ObserverConfig, PidConfig,
+    SetpointConfig, Status,
 };
 use controller_design::model::parse;
 use controller_sim_host::demo;
@@ -99,6 +100,22 @@ fn other_forms_and_defaults() {
         observer.compensator,
         CompensatorSpec::Observer(ObserverConfig { model, alpha: 1.0, order: Some(2) })
     );
+}
+
+/// Bandwidths are turned into gains; an event changes those that it names.
+#[test]
+fn an_adrc_and_its_changes() {
+    let text = include_str!("data/base.toml")
+        .replace("pid = { kp = 0.8, ki = 0.7 }", "adrc = { b0 = 5.0, omega_c = 10.0, omega_o = 40.0 }")
+        .replace("observer = { model", "# observer = { model")
+        .replace("disturbance = 1.0", "controller = \"PI + DOB\"\nadrc = { kd = 16.0, omega_o = 30.0 }");
+    let scenario = read(&text, Precision::F64).expect("no faults").scenario;
+    let adrc = AdrcConfig { b0: 5.0, kp: 100.0, kd: 20.0, beta1: 120.0, beta2: 4800.0, beta3: 64_000.0 };
+    let expected = ControllerSpec::adrc("PI + DOB", adrc);
+    assert_eq!(scenario.controllers[1], expected);
+    let Change::Parameters(list) = &scenario.events[1].changes[0] else { panic!("parameters") };
+    let adrc = AdrcConfig { kd: 16.0, beta1: 90.0, beta2: 2700.0, beta3: 27_000.0, ..adrc };
+    assert_eq!(*list, [(1, ControllerSpec { adrc: Some(adrc), ..expected })]);
 }
 
 #[test]

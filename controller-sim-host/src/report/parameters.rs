@@ -6,8 +6,8 @@ use crate::scenario::{Actuator, CompensatorSpec, ControllerSpec, Scenario, Senso
 use crate::simulate::Precision;
 use controller_core::plant_model::{Factor, PlantModel};
 use controller_core::{
-    Action, AlarmConfig, AntiWindupConfig, ControllerConfig, EstimatorConfig, FallbackAction, FallbackReturn,
-    IntegralRule, Mode, ObserverConfig,
+    Action, AdrcConfig, AlarmConfig, AntiWindupConfig, ControllerConfig, EstimatorConfig, FallbackAction,
+    FallbackReturn, IntegralRule, Mode, ObserverConfig, PidConfig,
 };
 
 /// A line of a table: name, unit, one value per column.
@@ -110,23 +110,35 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
             }
         };
     let none = String::new;
-    add("kp", format!("{u}/{y}"), true, &|c| Some(gain(c.config.pid.kp)));
-    add("ki", format!("{u}/({y} s)"), true, &|c| Some(gain(c.config.pid.ki)));
-    add("kd", format!("{u} s/{y}"), true, &|c| Some(gain(c.config.pid.kd)));
-    add("tf", "s".to_owned(), true, &|c| Some(gain(c.config.pid.tf)));
-    add("b", none(), true, &|c| Some(show(c.config.pid.b)));
-    add("c", none(), true, &|c| Some(show(c.config.pid.c)));
+    let pid = |c: &ControllerSpec, value: &dyn Fn(&PidConfig) -> String| {
+        c.adrc.is_none().then(|| value(&c.config.pid))
+    };
+    add("kp", format!("{u}/{y}"), false, &|c| pid(c, &|p| gain(p.kp)));
+    add("ki", format!("{u}/({y} s)"), false, &|c| pid(c, &|p| gain(p.ki)));
+    add("kd", format!("{u} s/{y}"), false, &|c| pid(c, &|p| gain(p.kd)));
+    add("tf", "s".to_owned(), false, &|c| pid(c, &|p| gain(p.tf)));
+    add("b", none(), false, &|c| pid(c, &|p| show(p.b)));
+    add("c", none(), false, &|c| pid(c, &|p| show(p.c)));
     add("action", none(), false, &|c| (c.config.pid.action == Action::Direct).then(|| "direct".to_owned()));
     add("integral rule", none(), false, &|c| {
         (c.config.pid.integral_rule == IntegralRule::Trapezoid).then(|| "trapezoid".to_owned())
     });
+    let adrc = |c: &ControllerSpec, value: fn(&AdrcConfig) -> f64| c.adrc.as_ref().map(|a| gain(value(a)));
+    let per_second = |power: &str| format!("1/s{power}");
+    add("ADRC: b0", format!("{y}/({u} s\u{b2})"), false, &|c| adrc(c, |a| a.b0));
+    add("ADRC: kp", per_second("\u{b2}"), false, &|c| adrc(c, |a| a.kp));
+    add("ADRC: kd", per_second(""), false, &|c| adrc(c, |a| a.kd));
+    add("ADRC: beta1", per_second(""), false, &|c| adrc(c, |a| a.beta1));
+    add("ADRC: beta2", per_second("\u{b2}"), false, &|c| adrc(c, |a| a.beta2));
+    add("ADRC: beta3", per_second("\u{b3}"), false, &|c| adrc(c, |a| a.beta3));
     let set = |x: f64, unset: f64| (x != unset).then(|| show(x));
     add("output from", u.clone(), false, &|c| set(c.config.limits.lo, -UNSET));
     add("output to", u.clone(), false, &|c| set(c.config.limits.hi, UNSET));
     add("output rises by at most", format!("{u}/s"), false, &|c| c.config.limits.rate_up.map(show));
     add("output falls by at most", format!("{u}/s"), false, &|c| c.config.limits.rate_down.map(show));
-    add("anti-windup", none(), true, &|c| Some(anti_windup(&c.config).to_owned()));
+    add("anti-windup", none(), false, &|c| c.adrc.is_none().then(|| anti_windup(&c.config).to_owned()));
     add("tt", "s".to_owned(), false, &|c| match c.config.anti_windup {
+        _ if c.adrc.is_some() => None,
         AntiWindupConfig::BackCalculation { tt: Some(tt) } => Some(show(tt)),
         AntiWindupConfig::BackCalculation { tt: None } => {
             Some(show_short(c.config.pid.default_tt(scenario.ts)))

@@ -1,5 +1,6 @@
 //! A `[[controller]]` as it is read, and as events change it.
 
+use super::adrc;
 use super::compensators;
 use super::designs;
 use super::fault::{Fault, code};
@@ -24,8 +25,8 @@ const SECONDARY: &str = "`[controller.secondary]` and below it `pid = { kp = 1.0
 const RANGE: &str = "`{ lo = 0.0, hi = 100.0 }`";
 
 /// The keys of an event that change parameters, in the order they are read.
-pub(super) const PARAMETER_KEYS: [&str; 7] =
-    ["pid", "limits", "setpoint_limits", "anti_windup", "deadband", "estimator", "observer"];
+pub(super) const PARAMETER_KEYS: [&str; 8] =
+    ["pid", "adrc", "limits", "setpoint_limits", "anti_windup", "deadband", "estimator", "observer"];
 
 /// Longest name: it heads the lines of tables.
 const LONGEST_NAME: usize = 60;
@@ -82,8 +83,16 @@ impl Draft {
         let mut places = Places::new(table.place.clone());
         let mut config = ControllerConfig::default();
         let wish = designs::read(&table, &mut places);
-        let pid = read_pid(&table, &mut places);
-        let compensator = compensators::read(&table, &mut places);
+        let at = adrc::place(&table);
+        let (pid, adrc, compensator) = match &at {
+            None => {
+                let pid = read_pid(&table, &mut places);
+                // It is one of the known keys.
+                let _ = table.span("adrc");
+                (pid, None, compensators::read(&table, &mut places))
+            }
+            Some(at) => (PidDraft::default(), adrc::read(&table, at, &mut places), CompensatorSpec::None),
+        };
         if let Some(part) = table.table("limits", LIMITS) {
             limits(part, &mut config.limits, &mut places);
         }
@@ -93,7 +102,9 @@ impl Draft {
         if let Some(part) = table.table("anti_windup", ANTI_WINDUP) {
             anti_windup(part, &mut config.anti_windup, &mut places);
         }
-        take(&table, "deadband", Param::Deadband, &mut places, &mut config.deadband);
+        if at.is_none() {
+            take(&table, "deadband", Param::Deadband, &mut places, &mut config.deadband);
+        }
         if let Some(part) = table.table("measurement", RANGE) {
             let params = [Param::MeasurementLo, Param::MeasurementHi];
             range(part, params, &mut config.measurement_lo, &mut config.measurement_hi, &mut places);
@@ -111,7 +122,7 @@ impl Draft {
         take_optional(&table, "off_output", Param::OffOutput, &mut places, &mut config.off_output);
         take(&table, "initial_output", Param::InitialOutput, &mut places, &mut config.initial_output);
         table.finish();
-        let spec = ControllerSpec { name, config, compensator, mode, secondary: None };
+        let spec = ControllerSpec { name, config, adrc, compensator, mode, secondary: None };
         Self { pid, spec, name_span: None, places, secondary: None, wish }
     }
 
@@ -119,7 +130,8 @@ impl Draft {
     pub(super) fn change(&mut self, event: &Table<'_>) {
         let Self { pid, spec, places, .. } = self;
         places.whole = event.place.clone();
-        if let Some(part) = event.table("pid", PID) {
+        adrc::change(event, spec, places);
+        if let (None, Some(part)) = (&spec.adrc, event.table("pid", PID)) {
             pid.change(part, &spec.name, places);
         }
         if let Some(part) = event.table("limits", LIMITS) {
@@ -131,8 +143,10 @@ impl Draft {
         if let Some(part) = event.table("anti_windup", ANTI_WINDUP) {
             anti_windup(part, &mut spec.config.anti_windup, places);
         }
-        take(event, "deadband", Param::Deadband, places, &mut spec.config.deadband);
-        compensators::change(event, spec, places);
+        if spec.adrc.is_none() {
+            take(event, "deadband", Param::Deadband, places, &mut spec.config.deadband);
+            compensators::change(event, spec, places);
+        }
     }
 
     /// Fulfils a wish for a design, once the plant and the sampling period are known.

@@ -74,6 +74,10 @@ fn subject(
         Param::Kd => "kd",
         _ => "",
     };
+    let (gain, converted) = match of_a_bandwidth(error.param, setting) {
+        Some(gain) => (gain, true),
+        None => (gain, converted),
+    };
     let written = log.slice(span);
     if converted && !gain.is_empty() {
         format!("`{gain} = {value}`, computed from `{} = {written}`,", setting.name)
@@ -82,6 +86,19 @@ fn subject(
     } else {
         format!("`{} = {value}`", setting.name)
     }
+}
+
+/// The gain of an ADRC that a bandwidth has set.
+fn of_a_bandwidth(param: Param, setting: &Setting) -> Option<&'static str> {
+    let gain = match param {
+        Param::AdrcKp => "kp",
+        Param::AdrcKd => "kd",
+        Param::Beta1 => "beta1",
+        Param::Beta2 => "beta2",
+        Param::Beta3 => "beta3",
+        _ => return None,
+    };
+    (setting.name.ends_with("omega_c") || setting.name.ends_with("omega_o")).then_some(gain)
 }
 
 fn is_of_the_model(param: Param) -> bool {
@@ -107,7 +124,14 @@ fn out_of_range(error: &ConfigError, spec: &ControllerSpec, subject: String, spa
                 fault = fault.help(reason);
             }
         }
-        Param::ModelGain => {
+        Param::AdrcKp | Param::AdrcKd if error.value >= error.max => {
+            fault = fault
+                .help("the sampled feedback is unstable beyond: make it slower, or choose a shorter `ts`");
+        }
+        Param::Beta3 if error.value >= error.max => {
+            fault = fault.help("the observer is unstable unless `beta3` is below `beta1*beta2`");
+        }
+        Param::ModelGain | Param::B0 => {
             let (least, most) = if error.min > 0.0 { (error.min, error.max) } else { (1e-15, error.max) };
             let size = format!("size {} to {}", show_short(least), show_short(most));
             fault.message = if error.value == 0.0 {
@@ -191,7 +215,18 @@ fn overflow(error: &ConfigError, draft: &Draft) -> Fault {
         .places
         .of(Param::Kp)
         .or(draft.places.of(Param::Ki))
+        .or(draft.places.of(Param::B0))
         .map_or(draft.places.whole.clone(), |s| s.span.clone());
+    if error.min > 0.0 {
+        // A coefficient of an ADRC alone, without the signals.
+        let allowed = range_text(error.min, error.max, "");
+        let message = format!(
+            "a coefficient of the sampled law is {} in size; allowed: {allowed}",
+            show_short(error.value)
+        );
+        return Fault::new(code::TOO_LARGE, span, message)
+            .help("choose units in which `b0` is nearer to 1, or another `ts`");
+    }
     let message = format!(
         "the gains times the ranges of the signals reach {}; allowed: at most {}",
         show_short(error.value),

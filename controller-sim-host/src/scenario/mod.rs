@@ -1,6 +1,7 @@
 //! What a scenario says: a plant, events, one or more controllers; and how it is [read] from TOML.
 #![doc = include_str!("format.md")]
 
+mod adrc;
 mod cases;
 mod columns;
 mod compensators;
@@ -51,7 +52,7 @@ pub use signal::{Between, Recording, Signal};
 pub(crate) use suggest::closest;
 pub use write::DesignFile;
 
-use controller_core::{ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
+use controller_core::{AdrcConfig, ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
 use controller_design::model::TransferFunction;
 
 /// A whole scenario, checked: everything a run needs.
@@ -212,6 +213,8 @@ pub struct ControllerSpec {
     pub name: String,
     /// PID, limits, set-point, anti-windup, fallback, alarms.
     pub config: ControllerConfig,
+    /// The ADRC that closes the loop in place of the PID of `config`, whose gains are then 0.
+    pub adrc: Option<AdrcConfig>,
     /// Disturbance block.
     pub compensator: CompensatorSpec,
     /// Requested mode at the start.
@@ -240,10 +243,17 @@ impl ControllerSpec {
         Self {
             name: name.to_owned(),
             config: ControllerConfig { pid, ..ControllerConfig::default() },
+            adrc: None,
             compensator: CompensatorSpec::None,
             mode: Mode::Auto,
             secondary: None,
         }
+    }
+
+    /// An ADRC with defaults for everything else, in mode Auto.
+    #[must_use]
+    pub fn adrc(name: &str, adrc: AdrcConfig) -> Self {
+        Self { adrc: Some(adrc), ..Self::pid(name, PidConfig::default()) }
     }
 
     /// The same controller with a disturbance estimator.

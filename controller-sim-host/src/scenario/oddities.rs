@@ -96,9 +96,13 @@ fn warn_of_actuator(scenario: &Scenario, tables: &Tables, log: &Log<'_>) {
         let driving = spec.secondary.as_deref().unwrap_or(spec);
         let limits = &driving.config.limits;
         let is_wider = limits.lo < actuator.lo || limits.hi > actuator.hi;
-        if is_wider && driving.config.pid.ki != 0.0 {
+        let effect = match driving.adrc {
+            Some(_) => "the observer is misled",
+            None => "the integral term winds up",
+        };
+        if is_wider && (driving.config.pid.ki != 0.0 || driving.adrc.is_some()) {
             let message = format!(
-                "`{}` goes from {} to {}, the actuator from {} to {} only: the integral term winds up",
+                "`{}` goes from {} to {}, the actuator from {} to {} only: {effect}",
                 driving.name,
                 show_short(limits.lo),
                 show_short(limits.hi),

@@ -15,7 +15,10 @@ use controller_core::{
 fn allowed(param: Param) -> Option<Allowed> {
     let range = |min, max, unit| Some(Allowed::new(min, max, unit));
     match param {
-        Param::Kp | Param::Ki | Param::Kd | Param::ModelGain => range(-1e15, 1e15, ""),
+        Param::Kp | Param::Ki | Param::Kd | Param::ModelGain | Param::B0 => range(-1e15, 1e15, ""),
+        Param::AdrcKp | Param::Beta2 => range(f64::MIN_POSITIVE, 1e30, ""),
+        Param::AdrcKd | Param::Beta1 => range(f64::MIN_POSITIVE, 1e15, ""),
+        Param::Beta3 => range(f64::MIN_POSITIVE, 1e45, ""),
         Param::B | Param::C => range(0.0, 2.0, ""),
         Param::Kfd => range(0.0, 1.0, ""),
         Param::Tf | Param::DeadTime => range(0.0, 1e12, "s"),

@@ -39,8 +39,10 @@ pub(super) struct Context<'a> {
 }
 
 /// Parameters whose range depends on the sampling period.
-const OF_THE_PERIOD: [Param; 9] = [
+const OF_THE_PERIOD: [Param; 11] = [
     Param::Ts,
+    Param::AdrcKp,
+    Param::AdrcKd,
     Param::Tf,
     Param::Tfd,
     Param::Alpha,
@@ -91,6 +93,10 @@ fn faults<T: Real>(spec: &ControllerSpec, context: &Context<'_>) -> Vec<ConfigEr
     let ts = round(context.ts.unwrap_or(1.0));
     let config = spec.config.rounded::<T>();
     let list = |errors: ConfigErrors| errors.as_slice().to_vec();
+    if let Some(adrc) = &spec.adrc {
+        let built = Controller::<T, _, _>::with_adrc(&config, &adrc.rounded::<T>(), ts);
+        return built.err().map_or_else(Vec::new, list);
+    }
     let Some(compensator) = spec.compensator_config(context.latency) else {
         return Controller::<T>::new(&config, ts).err().map_or_else(Vec::new, list);
     };
@@ -199,6 +205,17 @@ fn warn(draft: &Draft, spec: &ControllerSpec, context: &Context<'_>, log: &Log<'
             show_short(gain)
         );
         log.warn(Fault::new(code::SIGN, place(Param::ModelGain), message).help("give both the same sign"));
+        return;
+    }
+    if let Some(adrc) = &spec.adrc {
+        if adrc.b0 * gain < 0.0 {
+            let message = format!(
+                "`adrc.b0` and the plant's gain have opposite signs ({} and {}): the loop drives away from the set-point",
+                show_short(adrc.b0),
+                show_short(gain)
+            );
+            log.warn(Fault::new(code::SIGN, place(Param::B0), message).help("change the sign of `b0`"));
+        }
         return;
     }
     let (name, param, acting) = if ki == 0.0 { ("kp", Param::Kp, kp) } else { ("ki", Param::Ki, ki) };

@@ -2,8 +2,8 @@
 
 use crate::scenario::{CompensatorSpec, ControllerSpec};
 use controller_core::{
-    AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigError, ConfigErrors, Controller,
-    ControllerInput, ControllerOutput, ControllerState, Mode, NoCompensator, Param, Real, Reason,
+    Adrc, AdrcState, AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigError, ConfigErrors,
+    Controller, ControllerInput, ControllerOutput, ControllerState, Mode, NoCompensator, Param, Real, Reason,
 };
 
 type Compensated<T> = AnyCompensator<T, Vec<T>>;
@@ -22,6 +22,10 @@ enum Block<T: Real> {
     Plain {
         law: Controller<T, NoCompensator>,
         state: ControllerState<T, ()>,
+    },
+    Adrc {
+        law: Controller<T, NoCompensator, Adrc<T>>,
+        state: ControllerState<T, (), AdrcState<T>>,
     },
     Compensated {
         law: Box<Controller<T, Compensated<T>>>,
@@ -58,12 +62,16 @@ impl<T: Real> AnyLaw<T> {
     pub fn new(spec: &ControllerSpec, ts: f64, latency: f64, capacity: usize) -> Result<Self, ConfigErrors> {
         let ts = T::from_f64(ts).to_f64();
         let config = spec.config.rounded::<T>();
-        let block = match spec.compensator_config(latency) {
-            None => {
+        let block = match (&spec.adrc, spec.compensator_config(latency)) {
+            (Some(adrc), _) => {
+                let law = Controller::with_adrc(&config, &adrc.rounded::<T>(), ts)?;
+                Block::Adrc { law, state: law.zeroed() }
+            }
+            (None, None) => {
                 let law = Controller::new(&config, ts)?;
                 Block::Plain { law, state: law.zeroed() }
             }
-            Some(compensator) => {
+            (None, Some(compensator)) => {
                 let compensator = compensator.rounded::<T>();
                 // Both parts are built before either fails, so that all faults show at once.
                 let built = Compensated::new(&compensator, ts, capacity);
@@ -88,6 +96,7 @@ impl<T: Real> AnyLaw<T> {
         let [r0, y0, u0] = [r0, y0, u0].map(T::from_f64);
         match &mut self.block {
             Block::Plain { law, state } => law.settle(state, r0, y0, u0),
+            Block::Adrc { law, state } => law.settle(state, r0, y0, u0),
             Block::Compensated { law, state } => law.settle(state, r0, y0, u0),
         }
         // A settled state is in Auto. To change to these modes takes a sample of its own, which would swallow a set-point
@@ -107,6 +116,7 @@ impl<T: Real> AnyLaw<T> {
     pub fn step(&mut self, input: &ControllerInput<T>) -> ControllerOutput<T> {
         match &mut self.block {
             Block::Plain { law, state } => law.step(state, input),
+            Block::Adrc { law, state } => law.step(state, input),
             Block::Compensated { law, state } => law.step(state, input),
         }
     }
@@ -115,6 +125,7 @@ impl<T: Real> AnyLaw<T> {
     pub fn advance(&mut self, n: u32) {
         match &mut self.block {
             Block::Plain { law, state } => law.advance(state, n),
+            Block::Adrc { law, state } => law.advance(state, n),
             Block::Compensated { law, state } => law.advance(state, n),
         }
     }
@@ -122,7 +133,8 @@ impl<T: Real> AnyLaw<T> {
     /// Goes over to the parameters of `spec` without a bump.
     ///
     /// # Errors
-    /// Every fault of the configuration; the old law then stays. A controller cannot gain or lose its compensator.
+    /// Every fault of the configuration; the old law then stays. A controller cannot gain or lose its compensator, nor
+    /// change between PID and ADRC.
     pub fn adopt(&mut self, spec: &ControllerSpec) -> Result<(), ConfigErrors> {
         let new = Self::new(spec, self.ts, self.latency, self.capacity)?;
         match (&mut self.block, new.block) {
@@ -130,11 +142,15 @@ impl<T: Real> AnyLaw<T> {
                 new.adopt(law, state);
                 *law = new;
             }
+            (Block::Adrc { law, state }, Block::Adrc { law: new, .. }) => {
+                new.adopt(law, state);
+                *law = new;
+            }
             (Block::Compensated { law, state }, Block::Compensated { law: new, .. }) => {
                 new.adopt(law, state);
                 *law = new;
             }
-            // A state with a compensator cannot become one without, or the other way round.
+            // The state of one kind cannot become that of another.
             _ => {
                 let kind = ConfigError {
                     param: Param::FilterOrder,

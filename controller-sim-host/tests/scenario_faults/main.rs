@@ -3,6 +3,7 @@
 //! How every message looks to a person is kept in `data/messages.txt`, byte for byte. After a change that is meant, look
 //! at the new texts and keep them: `RENEW_MESSAGES=1 cargo test -p controller-sim-host --test scenario_faults`.
 
+mod adrc;
 mod around;
 mod basics;
 mod controllers;
@@ -43,7 +44,7 @@ const EVENT: &str = "disturbance = 1.0";
 const VERSION: &str = "version = 1";
 const LAST: &str = "kfd = 0.69, tfd = 0.06 }";
 
-const TABLES: [&[Case]; 7] = [
+const TABLES: [&[Case]; 8] = [
     text::CASES,
     basics::CASES,
     controllers::CASES,
@@ -51,6 +52,7 @@ const TABLES: [&[Case]; 7] = [
     around::CASES,
     plants::CASES,
     several::CASES,
+    adrc::CASES,
 ];
 
 fn edited(edits: &[(&str, &str)]) -> String {
