@@ -135,8 +135,10 @@ impl<T: Real> Adrc<T> {
                 break;
             }
         }
-        let largest =
-            |list: [f64; 4]| list.iter().fold(1.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
+        let gains = [kp, kd, l2, l3].iter().fold(1.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
+        let most_y = 1e-3 * T::LARGEST / gains;
+        // What `d` moves in one sample is no more than what the other estimates may be.
+        let most_u = (most_y / g.abs()).min(1e-3 * T::LARGEST);
         check.finish(Self {
             g: coefficient(g),
             half_g: coefficient(0.5 * g),
@@ -145,8 +147,8 @@ impl<T: Real> Adrc<T> {
             l3: coefficient(l3),
             kp: coefficient(kp),
             kd: coefficient(kd),
-            most_y: coefficient(1e-3 * T::LARGEST / largest([kp, kd, l2, l3])),
-            most_u: coefficient(1e-3 * T::LARGEST / largest([g, 0.0, 0.0, 0.0])),
+            most_y: coefficient(most_y),
+            most_u: coefficient(most_u),
             ts: coefficient(ts),
         })
     }
