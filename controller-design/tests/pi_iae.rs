@@ -100,6 +100,11 @@ fn no_small_change_of_any_gain_is_better() {
         "0.1*exp(-2*s)/(s*(1+s)^2)",
         "1/(1+s)^3",
         "exp(-s)/(1+0.01*s)",
+        "exp(-0.2*s)/(s-1)",
+        "1/((1+s)*(1+0.01*s)*(1+0.0001*s))",
+        "exp(-1e-4*s)/(1+s)",
+        "exp(-3*s)/(1+s)^8",
+        "(1-10*s)/(1+s)^2",
     ] {
         let g = parse(text).expect("a plant");
         let d = PiIae::new(&g).unwrap_or_else(|e| panic!("{text}: {e}"));

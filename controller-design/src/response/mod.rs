@@ -318,6 +318,11 @@ impl Settling {
     }
 }
 
+/// The sign of `ki` without which no loop of this plant is stable.
+pub(crate) fn sign_of_ki(plant: &TransferFunction) -> f64 {
+    realisation::sign_of_ki(plant).signum()
+}
+
 fn unstable() -> Refusal {
     Refusal::NoSolution {
         why: "the loop of this plant and controller is unstable",
@@ -371,9 +376,9 @@ fn check(plant: &TransferFunction, pid: &PidConfig, observer: Option<Observer>) 
         });
     }
     let [_, ki, _] = pid.signed_gains();
-    if ki == 0.0 || (ki > 0.0) != (realisation::sign_of_ki(plant) > 0.0) {
+    if ki == 0.0 || ki.signum() != sign_of_ki(plant) {
         return Err(Refusal::NoSolution {
-            why: "the integral gain must not be 0 and must have the sign of the plant's gain",
+            why: "the integral gain must not be 0 and must have the sign of the plant's gain (the other one if an odd number of real poles is unstable)",
             help: "check the sign of ki, the action of the controller and the sign of the gain",
         });
     }

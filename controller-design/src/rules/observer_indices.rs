@@ -75,13 +75,15 @@ impl Wish {
 /// ```
 /// use controller_core::PidConfig;
 /// use controller_design::model::parse;
+/// use controller_design::response::{ContinuousResponse, Load};
 /// use controller_design::rules::{Wish, alpha_for};
 ///
 /// // Tena et al. 2022, table 3, plant 2, as recomputed: alpha = 10 brings the ISE to 0.1166 of the PI's.
 /// let plant = parse("exp(-20*s)/(1+80*s)").expect("a plant");
 /// let pid = PidConfig { kp: 0.696075276, ki: 0.011533633, ..PidConfig::default() };
-/// let alpha = alpha_for(&plant, &pid, Wish::RampIe(30.0 / pid.ki))?;
-/// assert!((alpha - 10.0).abs() < 1e-9);
+/// let alone = ContinuousResponse::new(&plant, &pid, None)?.indices(Load::Step)?;
+/// let alpha = alpha_for(&plant, &pid, Wish::Ise(0.11664 * alone.ise))?;
+/// assert!((alpha - 10.0).abs() < 0.01);
 /// # Ok::<(), controller_design::Refusal>(())
 /// ```
 pub fn alpha_for(plant: &TransferFunction, pid: &PidConfig, wish: Wish) -> Result<f64, Refusal> {

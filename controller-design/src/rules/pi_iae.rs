@@ -4,7 +4,7 @@ use controller_core::PidConfig;
 
 use crate::margins::ContinuousLoop;
 use crate::model::{Complex, ModelError, TransferFunction};
-use crate::response::ContinuousResponse;
+use crate::response::{ContinuousResponse, sign_of_ki};
 use crate::{Refusal, Warning, Warnings};
 
 /// Accuracy of each IAE: well below what the flat optimum makes of 0.1 % in `kp`.
@@ -87,7 +87,7 @@ impl PiIae {
     /// * A plant whose loop cannot be computed: see [`ContinuousResponse::new`].
     pub fn new(plant: &TransferFunction) -> Result<Self, Refusal> {
         // Says what is wrong with the plant itself, before any search.
-        let probe = PidConfig { kp: 0.0, ki: plant.gain().signum(), ..PidConfig::default() };
+        let probe = PidConfig { kp: 0.0, ki: sign_of_ki(plant), ..PidConfig::default() };
         if let Err(refusal @ Refusal::Plant { .. }) = ContinuousResponse::new(plant, &probe, None) {
             return Err(refusal);
         }
@@ -122,7 +122,7 @@ impl PiIae {
 /// Where the plant would oscillate under proportional control.
 #[derive(Debug, Clone, Copy)]
 struct Limit {
-    /// The gain, with the sign of the plant's.
+    /// The gain, with its sign.
     gain: f64,
     /// The frequency \[rad/s\].
     omega: f64,
@@ -130,7 +130,7 @@ struct Limit {
 
 impl Limit {
     fn of(plant: &TransferFunction) -> Option<Self> {
-        let sign = plant.gain().signum();
+        let sign = sign_of_ki(plant);
         let roots = plant.poles().into_iter().chain(plant.zeros());
         let sizes = roots.map(Complex::abs).filter(|w| *w > 0.0);
         let delay = Some(1.0 / plant.dead_time()).filter(|w| w.is_finite());
@@ -203,8 +203,16 @@ impl Search<'_> {
         // kp over the limit gain, and kp over ki in units of the limit frequency.
         let usual = [0.55, 0.3, 0.1].map(|kp| [6.0, 2.5, 1.0].map(|ti| [kp, libm::log(kp / ti)]));
         let integral = [0.3, 0.06, 0.01].map(|ki| [0.0, libm::log(ki)]);
+        // Plants with little phase to spare over a wide range, such as lags far apart.
+        let patient =
+            [0.2, 0.06, 0.02, 0.006].map(|kp| [20.0, 70.0, 250.0].map(|ti| [kp, libm::log(kp / ti)]));
+        self.best_of(usual.into_iter().flatten().chain(integral))
+            .or_else(|| self.best_of(patient.into_iter().flatten()))
+    }
+
+    fn best_of(&self, places: impl Iterator<Item = Place>) -> Option<Trial> {
         let mut best: Option<Trial> = None;
-        for place in usual.into_iter().flatten().chain(integral) {
+        for place in places {
             let trial = self.trial(place, best.map_or(f64::INFINITY, |b| b.iae));
             if trial.iae.is_finite() && best.is_none_or(|b| trial.iae < b.iae) {
                 best = Some(trial);
