@@ -101,8 +101,8 @@ impl PiIae {
             help: "use a PID, or a rule for this kind of plant",
         })?;
         // The second descent shows whether the first one got stuck.
-        for size in [0.12, 0.03] {
-            best = search.descend(best, size);
+        for (size, end) in [(0.12, 4e-3), (0.02, 2e-4)] {
+            best = search.descend(best, size, end);
         }
         let pid = search.pid(best.place);
         let ms = ContinuousLoop::new(plant, &pid).margins()?.ms;
@@ -221,8 +221,8 @@ impl Search<'_> {
         best
     }
 
-    /// Nelder and Mead's simplex around the best trial so far.
-    fn descend(&self, best: Trial, size: f64) -> Trial {
+    /// Nelder and Mead's simplex around the best trial so far, until it is smaller than `end`.
+    fn descend(&self, best: Trial, size: f64, end: f64) -> Trial {
         let corner = |i: usize| {
             let mut place = best.place;
             // A relative step in both: kp may be small against its limit.
@@ -234,7 +234,7 @@ impl Search<'_> {
             simplex.sort_by(|a, b| a.iae.total_cmp(&b.iae));
             let [a, b, c] = simplex;
             let across = |i: usize| (a.place[i] - b.place[i]).abs().max((a.place[i] - c.place[i]).abs());
-            if across(0) < 2e-4 * a.place[0].max(0.01) && across(1) < 2e-4 {
+            if across(0) < end * a.place[0].max(0.01) && across(1) < end {
                 break;
             }
             let at = |t: f64, limit: f64| {
