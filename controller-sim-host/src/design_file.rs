@@ -2,7 +2,7 @@
 
 use crate::scenario::{self, ControllerSpec, DesignFile, Units};
 use controller_core::{LimitConfig, PidConfig};
-use controller_design::design::{Design, Law, Method};
+use controller_design::design::{Design, Law};
 
 /// Longest run of a design file, in samples.
 const LONGEST: f64 = 2e6;
@@ -47,8 +47,9 @@ fn shortened(plant: &str) -> String {
 /// whole samples.
 fn window(made: &Design) -> f64 {
     let plant = &made.plant;
-    let rates = plant.poles().into_iter().map(|pole| pole.abs()).filter(|rate| *rate > 0.0);
-    let mut slowest = rates.map(f64::recip).fold(made.ts, f64::max);
+    let poles = plant.poles();
+    let lags = poles.iter().map(|pole| 1.0 / pole.abs()).filter(|lag| lag.is_finite());
+    let mut slowest = lags.clone().fold(made.ts, f64::max);
     let mut dead_time = plant.dead_time() + made.latency;
     if let Law::Pid { pid, estimator, observer } = &made.law {
         // The slow mode that the integral term makes: (1 + K*kp)/(K*ki), kp/ki with an integrator.
@@ -62,8 +63,10 @@ fn window(made: &Design) -> f64 {
         slowest = slowest.max(observer.as_ref().map_or(0.0, |o| o.alpha));
         dead_time += estimator.map_or(0.0, |e| e.dead_time);
     }
-    if made.method == Method::Adrc {
-        slowest *= 2.0;
+    if let Law::Adrc(adrc) = &made.law {
+        // What the closed form of the IE says of its slow mode, and the lags that come on top of it.
+        let mode = made.predicted.ie_setpoint.map_or(0.0, f64::abs);
+        slowest = slowest.max(mode + lags.sum::<f64>()).max(adrc.kd / adrc.kp);
     }
     let samples = ((14.0 * slowest + 10.0 * dead_time) / made.ts).clamp(10.0, LONGEST);
     // By way of text: a round number of seconds stays one.

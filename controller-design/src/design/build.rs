@@ -16,7 +16,7 @@ use crate::rules::{
 };
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
-use controller_core::{ObserverConfig, PidConfig};
+use controller_core::{Adrc, AdrcCoefficients, AdrcConfig, ObserverConfig, PidConfig};
 
 /// Default maximum sensitivity of rules that are given one.
 const DEFAULT_MS: f64 = 1.4;
@@ -176,7 +176,6 @@ impl Job<'_> {
         self.made.model = Some(RuleModel { gain, integrators: 0, a1, a2, dead_time });
         let Some(mut estimator) = made.estimator else { return Ok(plain(made.pid)) };
         if let Some(most) = self.request.ms_max {
-            let latency = 0.5 * ts;
             within(
                 &self.delayed,
                 &made.pid,
@@ -278,6 +277,22 @@ fn continuous(plant: &TransferFunction, law: &Law, latency: f64) -> Result<Conti
     Ok(made)
 }
 
+/// The integrals of the error with an ADRC, from the sampled law at `z = 1`: with `1 - C_u = n*c`, `n = 1 - 1/z`, the load
+/// gives `-ts*c/kp` and the set-point `ts*(c/K + kd)/kp`, in the coefficients of the law.
+fn of_adrc(config: &AdrcConfig, plant: &TransferFunction, ts: f64) -> Option<Predicted> {
+    let AdrcCoefficients { g, l1, l2, l3, kp, kd } = Adrc::<f64>::new(config, ts).ok()?.coefficients();
+    if plant.differentiators() > 0 {
+        return None;
+    }
+    let c = (l2 / g + kp * (1.0 - l1) + kd * (l1 - 0.5 * l2)) / l3;
+    let static_error = if plant.integrators() > 0 { 0.0 } else { c / plant.gain() };
+    Some(Predicted {
+        ie_setpoint: Some(ts * (static_error + kd) / kp),
+        ie_load: Some(-ts * c / kp),
+        iae_load: None,
+    })
+}
+
 /// The loop of the law that will run on the sampled plant.
 fn sampled(plant: &TransferFunction, law: &Law, request: &Request) -> Result<Sampled, Refusal> {
     const LONG: Refusal = Refusal::NoSolution {
@@ -343,6 +358,9 @@ fn finish(
             let static_error = if delayed.integrators() > 0 { 0.0 } else { 1.0 / delayed.gain() };
             predicted.ie_setpoint = Some((static_error + (1.0 - pid.b) * pid.kp) / pid.ki);
         }
+    }
+    if let Law::Adrc(config) = &law {
+        predicted = of_adrc(config, delayed, request.ts).unwrap_or(predicted);
     }
     if let Some(samples) = few_samples(&sampled.margins, request.ts) {
         let text =

@@ -1,6 +1,6 @@
 //! Keeping a loop with a disturbance estimator within a maximum sensitivity.
 
-use crate::margins::ContinuousLoop;
+use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
 use crate::model::TransferFunction;
 use crate::rules::de_momi;
 use crate::rules::reduction::Reduced;
@@ -17,8 +17,8 @@ const HALVINGS: usize = 40;
 const LEAST_SHARE: f64 = 0.3;
 
 /// Changes `estimator` until the loop's maximum sensitivity is at most `most`: first `tfd` is raised, `kfd` following by
-/// eqs (18), (19) of Vrančić & Huba 2021, as long as that keeps at least 30 % of the first gain; then `kfd` is cut. `hold` is the delay of
-/// the sampling, half a period \[s\].
+/// eqs (18), (19) of Vrančić & Huba 2021, as long as that keeps at least 30 % of the first gain; then `kfd` is cut. The
+/// larger of the continuous and the sampled loop's counts.
 ///
 /// # Errors
 /// The loop is above `most` without any estimator, or not stable.
@@ -27,21 +27,26 @@ pub(super) fn within(
     pid: &PidConfig,
     estimator: &mut EstimatorConfig,
     model: &Reduced,
-    (most, hold): (f64, f64),
+    (most, ts): (f64, f64),
     warnings: &mut Warnings,
 ) -> Result<(), Refusal> {
     if !(most > 1.0 && most <= 100.0) {
         return Err(Refusal::OutOfRange { parameter: "ms_max", value: most, min: 1.0, max: 100.0 });
     }
     let ms = |estimator: &EstimatorConfig| {
-        let loop_ = ContinuousLoop::new(plant, pid).with_latency(hold).with_estimator(estimator);
-        let margins = loop_.and_then(|loop_| loop_.margins());
-        margins.map_or(f64::INFINITY, |margins| margins.ms)
+        let loop_ = ContinuousLoop::new(plant, pid).with_estimator(estimator);
+        let sampled = DiscreteLaw::with_compensator(pid, &estimator.to_compensator(0.0), ts)
+            .ok()
+            .and_then(|law| DiscreteLoop::new(plant, law, 0.0).ok());
+        match (loop_.and_then(|loop_| loop_.margins()), sampled.map(|sampled| sampled.margins())) {
+            (Ok(one), Some(Ok(two))) => one.ms.max(two.ms),
+            _ => f64::INFINITY,
+        }
     };
     if ms(estimator) <= most {
         return Ok(());
     }
-    let plain = ContinuousLoop::new(plant, pid).with_latency(hold).margins()?.ms;
+    let plain = ms(&EstimatorConfig { kfd: 0.0, ..*estimator });
     if plain > most {
         return Err(Refusal::Unattainable { what: "ms_max", asked: most, least: plain });
     }

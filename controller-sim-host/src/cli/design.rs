@@ -11,7 +11,6 @@ use crate::scenario::{Fault, SourceText, code};
 use controller_design::Refusal;
 use controller_design::design::{Method, design};
 use controller_design::model::{TransferFunction, parse};
-use std::io::Write;
 
 /// `design`: `command` is what was typed.
 pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Result<(), Failure> {

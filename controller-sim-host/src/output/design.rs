@@ -127,7 +127,8 @@ fn margins(text: &mut String, made: &Design) {
     let noise = &made.sampled.noise;
     line(text, format_args!("\n{:<24}{:>12}{:>12}", "noise gain [u/y]", "formula", "sampled"));
     let rows = [
-        ("PID, K_PIDn", made.noise.kpidn, Some(noise.kpidn)),
+        ("PID, K_PIDn", made.noise.kpidn, made.noise.kpidn.map(|_| noise.kpidn)),
+        ("controller at w_HF", None, made.noise.kpidn.is_none().then_some(noise.controller)),
         ("estimator, K_DEn", made.noise.kden, made.noise.kden.map(|_| noise.kden)),
         ("PI + observer, A_n", made.noise.an, made.noise.an.map(|_| noise.step)),
         ("white noise, std(u)/std(n)", None, Some(noise.white)),

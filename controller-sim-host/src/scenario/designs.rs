@@ -132,6 +132,6 @@ pub(crate) fn apply(made: &Design, spec: &mut ControllerSpec) {
             let observer = observer.clone().map(CompensatorSpec::Observer);
             spec.compensator = estimator.or(observer).unwrap_or_default();
         }
-        Law::Adrc(_) => {}
+        Law::Adrc(adrc) => spec.adrc = Some(*adrc),
     }
 }

@@ -70,7 +70,20 @@ impl DesignFile {
     fn push_controller(&self, text: &mut String) {
         let spec = &self.controller;
         push(text, format_args!("[[controller]]\nname = {}", quoted(&spec.name)));
-        push(text, format_args!("pid = {}", pid(&spec.config.pid)));
+        match &spec.adrc {
+            None => push(text, format_args!("pid = {}", pid(&spec.config.pid))),
+            Some(a) => {
+                let keys = [
+                    ("b0", a.b0),
+                    ("kp", a.kp),
+                    ("kd", a.kd),
+                    ("beta1", a.beta1),
+                    ("beta2", a.beta2),
+                    ("beta3", a.beta3),
+                ];
+                push(text, format_args!("adrc = {}", table(&keys)));
+            }
+        }
         match &spec.compensator {
             CompensatorSpec::None => {}
             CompensatorSpec::Estimator(e) => {
