@@ -4,7 +4,7 @@ use core::ops::Range;
 use std::vec::Vec;
 
 use super::baseline::{Baseline, noise};
-use super::judge::Shape;
+use super::judge::{MOST_NOISE, Shape};
 use super::locate::Parts;
 use super::reason::Reason;
 use super::record::Record;
@@ -24,8 +24,6 @@ const ALL_WITHIN: f64 = 12.0;
 /// Least rise after a dip, in first peaks and in standard deviations of the smoothed noise.
 const RISE: f64 = 0.02;
 const RISE_NOISE: f64 = 4.0;
-/// Most noise: four standard deviations after smoothing, in first peaks.
-const MOST_NOISE: f64 = 0.06;
 /// Shortest record after the step, in peak times.
 const SHORTEST: f64 = 4.0;
 /// Fewest samples until the first peak, and from how many on the times are good.
@@ -114,12 +112,8 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
         return Err(Reason::Resolution(resolution / p1));
     }
     baseline.check(record, (p1, t1), (sigma, white, half_width))?;
-    // Noise that is no white noise is seen at rest; a loop close to instability makes it of white noise, too.
-    let resting = if oscillates { 0.0 } else { rms(baseline.smoothed(record, half_width)) };
-    let ss = white.max(resting);
-    if RISE_NOISE * ss > MOST_NOISE * p1 {
-        return Err(Reason::Noise(RISE_NOISE * ss / p1));
-    }
+    // Noise that is no white noise is seen at rest.
+    let ss = white.max(rms(baseline.smoothed(record, half_width)));
     let auto = parts.auto.ok_or(Reason::NeverAuto)?;
     check_samples(record, &parts, (t0, t1), oscillates, out)?;
     check_auto(auto, &view, record, (y1, half_width), out)?;
@@ -143,7 +137,7 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
     }
     check_back(record, &baseline, auto..end, &curve, (y1, t1))?;
     let dip = dip.map(|(low, high)| (level(low.1), (low.0 - t0) / t1, level(high.1)));
-    Ok(Shape { dip, lowest, oscillates })
+    Ok(Shape { dip, lowest, oscillates, noise: RISE_NOISE * ss / p1 })
 }
 
 /// Deviations from the baseline in shares of the largest one.

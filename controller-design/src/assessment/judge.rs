@@ -105,6 +105,9 @@ impl Changes {
     }
 }
 
+/// Most noise: four standard deviations after smoothing, in first peaks.
+pub(super) const MOST_NOISE: f64 = 0.06;
+
 /// The response in first peaks and times of the first peak.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
@@ -112,22 +115,33 @@ pub(super) struct Shape {
     pub(super) dip: Option<(f64, f64, f64)>,
     /// Lowest value after the first peak.
     pub(super) lowest: f64,
+    /// Four standard deviations of the smoothed noise.
+    pub(super) noise: f64,
     /// Three swings or more of comparable size.
     pub(super) oscillates: bool,
 }
 
 pub(super) fn judge(shape: &Shape, limits: &Acceptance) -> (Verdict, Vec<Reason>) {
+    // A loop close to instability makes much of little noise: what it does beyond the noise is clear all the same.
+    let clear = shape.dip.is_some_and(|(dip, _, r3)| {
+        dip < limits.dip.0 - shape.noise || r3 > limits.r3.max(dip + limits.rise) + shape.noise
+    });
+    if shape.noise > MOST_NOISE && !clear && !shape.oscillates {
+        return (Verdict::Inconclusive, vec![Reason::Noise(shape.noise)]);
+    }
+    let mut reasons = Vec::new();
     if shape.oscillates {
-        return (Verdict::Aggressive, vec![Reason::Oscillates]);
+        reasons.push(Reason::Oscillates);
     }
     let Some((dip, t_ratio, r3)) = shape.dip else {
-        return if shape.lowest < limits.dip.0 {
+        return if shape.oscillates {
+            (Verdict::Aggressive, reasons)
+        } else if shape.lowest < limits.dip.0 {
             (Verdict::Aggressive, vec![Reason::DipTooDeep(shape.lowest)])
         } else {
             (Verdict::Sluggish, vec![Reason::NoDip])
         };
     };
-    let mut reasons = Vec::new();
     // Of a response that turns before it is back, the rise from there tells how it swings.
     let swings = if dip > limits.dip.1 { r3 - dip > limits.rise } else { r3 > limits.r3 };
     if dip < limits.dip.0 {
@@ -159,7 +173,7 @@ mod tests {
     use super::*;
 
     fn of(dip: f64, t_ratio: f64, r3: f64) -> (Verdict, Vec<Reason>) {
-        let shape = Shape { dip: Some((dip, t_ratio, r3)), lowest: dip, oscillates: false };
+        let shape = Shape { dip: Some((dip, t_ratio, r3)), lowest: dip, oscillates: false, noise: 0.0 };
         judge(&shape, &Acceptance::default())
     }
 
@@ -201,9 +215,20 @@ mod tests {
     }
 
     #[test]
+    fn much_noise_leaves_only_what_is_clear() {
+        let of = |dip, r3| {
+            let shape = Shape { dip: Some((dip, 2.0, r3)), lowest: dip, oscillates: false, noise: 0.07 };
+            judge(&shape, &Acceptance::default()).0
+        };
+        assert_eq!([of(-0.1, 0.1), of(-0.2, 0.1), of(0.1, 0.3)], [Verdict::Inconclusive; 3]);
+        assert_eq!([of(-0.26, 0.1), of(-0.1, 0.38), of(0.2, 0.48)], [Verdict::Aggressive; 3]);
+    }
+
+    #[test]
     fn without_a_dip() {
-        let none =
-            |lowest, oscillates| judge(&Shape { dip: None, lowest, oscillates }, &Acceptance::default()).0;
+        let none = |lowest, oscillates| {
+            judge(&Shape { dip: None, lowest, oscillates, noise: 0.0 }, &Acceptance::default()).0
+        };
         assert_eq!(none(0.01, false), Verdict::Sluggish);
         assert_eq!(none(-0.1, false), Verdict::Sluggish);
         assert_eq!(none(-0.2, false), Verdict::Aggressive);
