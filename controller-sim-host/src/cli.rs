@@ -1,6 +1,7 @@
 //! The command line: arguments, exit codes, what goes to which stream.
 
 mod arguments;
+mod assess;
 mod design;
 mod examples;
 mod execute;
@@ -11,6 +12,7 @@ mod outputs;
 mod pages;
 mod progress;
 mod quoting;
+mod record;
 mod run;
 mod scenarios;
 mod usage;
@@ -89,6 +91,7 @@ pub fn main() -> ExitCode {
         Some(Command::Demo(arguments)) => gallery::run(&arguments, json, &command),
         Some(Command::Run(arguments)) => run::run(&arguments, json, &command),
         Some(Command::Design(arguments)) => design::run(&arguments, json, &command),
+        Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),
         Some(Command::Schema) => pages::schema(),
@@ -112,7 +115,10 @@ fn wrong(error: &clap::Error, json: bool) -> ExitCode {
 }
 
 fn report(failure: &Failure, json: bool) -> ExitCode {
-    let printed = if json {
+    let printed = if failure.troubles.is_empty() {
+        // It was said with the result.
+        Ok(())
+    } else if json {
         print(&error_json(&failure.troubles))
     } else {
         let message = match (failure.code, &*failure.troubles) {

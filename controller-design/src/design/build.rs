@@ -176,14 +176,7 @@ impl Job<'_> {
         self.made.model = Some(RuleModel { gain, integrators: 0, a1, a2, dead_time });
         let Some(mut estimator) = made.estimator else { return Ok(plain(made.pid)) };
         if let Some(most) = self.request.ms_max {
-            within(
-                &self.delayed,
-                &made.pid,
-                &mut estimator,
-                model,
-                (most, latency),
-                &mut self.made.warnings,
-            )?;
+            within(&self.delayed, &made.pid, &mut estimator, model, (most, ts), &mut self.made.warnings)?;
         }
         self.made.noise.kden = Some(noise_limit::kden(model, estimator.kfd, estimator.tfd, ts));
         // The block adds the latency itself.

@@ -26,6 +26,8 @@ pub(super) enum Command {
     Demo(DemoArguments),
     /// Designs a controller for a plant
     Design(DesignArguments),
+    /// Judges from a recorded experiment whether a PI loop is tuned for loads
+    Assess(super::assess::AssessArguments),
     /// Prints the completions for a shell
     Completions(CompletionsArguments),
     /// Prints the manual page

@@ -42,6 +42,19 @@ Examples:
   controller-sim run loop.toml --report loop.html
 
 Exit code 3: the rule has no result for this plant or wish; the message says why and what helps.";
+pub(super) const ASSESS: &str = "\
+The experiment: in automatic, at rest, without error. Switch to manual, step the output, switch back to
+automatic within the dead time. Record until the loop is at rest again.
+
+Examples:
+  controller-sim demo load-experiment --csv loop.csv    make a record by simulation
+  controller-sim assess loop.csv --controller 'well tuned' --report loop.html
+  controller-sim assess log.csv                         is this loop tuned for loads?
+  controller-sim assess log.csv --report log.html       with the picture of the response
+  controller-sim assess log.csv --time Zeit --setpoint SP --output PV --input OP
+  controller-sim assess log.csv --step-at 754 --auto-at 757
+
+Exit codes: 0 with a verdict, 3 when the record does not tell (with the reason), 2 bad input.";
 
 pub(super) const COMPLETIONS: &str = "\
 Examples:

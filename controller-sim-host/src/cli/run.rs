@@ -69,7 +69,7 @@ pub(super) fn run_inputs(
 }
 
 /// What opens a file with the program made for it.
-const OPEN: &str = if cfg!(target_os = "macos") {
+pub(super) const OPEN: &str = if cfg!(target_os = "macos") {
     "open"
 } else if cfg!(windows) {
     "start"

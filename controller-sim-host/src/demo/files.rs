@@ -24,6 +24,7 @@ pub(super) const ALL: &[(&str, &str)] = texts![
     "latency.toml",
     "single-precision.toml",
     "level.toml",
+    "load-experiment.toml",
     "actuator.toml",
     "sine-disturbance.toml",
     "random-walk.toml",

@@ -83,7 +83,7 @@ struct Error<'a> {
 }
 
 #[derive(Serialize)]
-struct Place<'a> {
+pub(super) struct Place<'a> {
     file: Option<&'a str>,
     line: Option<usize>,
     column: Option<usize>,
@@ -96,7 +96,7 @@ struct Place<'a> {
 
 impl<'a> Place<'a> {
     /// What has no place in a text.
-    fn nowhere(code: &'a str, message: impl Into<Cow<'a, str>>, help: Option<&'a str>) -> Self {
+    pub(super) fn nowhere(code: &'a str, message: impl Into<Cow<'a, str>>, help: Option<&'a str>) -> Self {
         Self {
             file: None,
             line: None,
@@ -199,7 +199,11 @@ fn trouble_places(trouble: &Trouble) -> Vec<Place<'_>> {
     }
 }
 
-fn places<'a>(name: &'a str, text: &'a str, faults: &'a [Fault]) -> impl Iterator<Item = Place<'a>> {
+pub(super) fn places<'a>(
+    name: &'a str,
+    text: &'a str,
+    faults: &'a [Fault],
+) -> impl Iterator<Item = Place<'a>> {
     faults.iter().map(move |fault| {
         let place = fault.place(text);
         Place {

@@ -4,6 +4,7 @@
 #![doc = include_str!("json.md")]
 
 mod advice;
+mod assessment;
 mod csv;
 mod design;
 mod design_json;
@@ -17,6 +18,7 @@ pub(crate) mod table;
 
 pub use self::parquet::ParquetWriter;
 pub use advice::{advice_json, advice_table};
+pub use assessment::{assessment_json, assessment_table};
 pub use csv::CsvWriter;
 pub use design::design_table;
 pub use design_json::design_json;

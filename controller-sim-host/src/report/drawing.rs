@@ -169,7 +169,7 @@ fn draw_marks(marks: &[Mark], bottom: f64) -> Markup {
     }
 }
 
-fn time_axis(axis: &Axis, y: f64) -> Markup {
+pub(super) fn time_axis(axis: &Axis, y: f64) -> Markup {
     html! {
         line class="axis" x1="0" x2="100%" y1=(pixel(y)) y2=(pixel(y)) {}
         @for tick in &axis.ticks {

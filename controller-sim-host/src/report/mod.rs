@@ -4,10 +4,12 @@
 //! that happened between two columns is lost. A page is for reading: it says what was run, shows the curves, lists the
 //! metrics and the parameters, and has the text of the scenario in it to repeat the run.
 
+mod assessment;
 mod bands;
 mod chapter;
 mod describe;
 mod drawing;
+mod experiment;
 mod legend;
 mod marks;
 mod overview;
@@ -19,6 +21,9 @@ mod scale;
 mod standalone;
 mod tables;
 mod words;
+
+pub use assessment::{Experiment, Line, advice, assessment_page, lines, verdict_line};
+pub use experiment::Signals;
 
 use crate::scenario::{Fault, Scenario};
 use crate::simulate::{Precision, RunResult};

@@ -1,5 +1,6 @@
 //! The program as it is called: exit codes, streams, JSON, files.
 
+mod assess;
 mod faults;
 mod features;
 mod files;

@@ -1,0 +1,277 @@
+//! The page of a load-response experiment: verdict, picture, features beside their ranges, what to change.
+
+use super::drawing::pixel;
+use super::experiment::{Picture, Signals, draw};
+use super::standalone::STYLE;
+use crate::output::table::format_number;
+use controller_design::assessment::{Acceptance, Assessment, Change, Features, Verdict};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const PAGE_STYLE: &str = include_str!("style/page.css");
+const OWN_STYLE: &str = include_str!("style/experiment.css");
+
+/// An experiment with what came of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Experiment<'a> {
+    /// The file of the record, and which controller in it.
+    pub name: &'a str,
+    /// What was recorded.
+    pub signals: Signals<'a>,
+    /// What it says.
+    pub assessment: &'a Assessment,
+    /// The ranges it was held against.
+    pub acceptance: Acceptance,
+}
+
+/// One line that says it all.
+#[must_use]
+pub fn verdict_line(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NearOptimal => "tuned for loads: the IAE is close to the least a PI can have",
+        Verdict::Aggressive => "too aggressive: the loop swings after a load",
+        Verdict::Sluggish => "too sluggish: the loop takes its time after a load",
+        Verdict::Inconclusive => "the record does not tell how the loop is tuned",
+    }
+}
+
+/// A feature, its value, the range of a near-optimal loop, and whether it is in it.
+pub struct Line {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// Its value as text; `-` when there is none.
+    pub value: String,
+    /// The range as text.
+    pub range: String,
+    /// Whether it is in the range; `None`: it has none.
+    pub good: Option<bool>,
+}
+
+/// The features as a person reads them, for the terminal and the page.
+#[must_use]
+pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
+    let number = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), format_number);
+    let within = |x: Option<f64>, (lo, hi): (f64, f64)| Some(x.is_some_and(|x| x >= lo && x <= hi));
+    let Acceptance { dip, t_ratio, r3, .. } = *acceptance;
+    let line = |name, about, value: Option<f64>, range: String, good| Line {
+        name,
+        about,
+        value: number(value),
+        range,
+        good,
+    };
+    vec![
+        line(
+            "dip",
+            "lowest value after the first peak, in first peaks",
+            features.dip,
+            format!("{:.2} to {:.2}", dip.0, dip.1),
+            within(features.dip, dip),
+        ),
+        line(
+            "t_ratio",
+            "time of the dip, in times of the first peak",
+            features.t_ratio,
+            format!("{:.2} to {:.2}", t_ratio.0, t_ratio.1),
+            within(features.t_ratio, t_ratio),
+        ),
+        line(
+            "r3",
+            "highest value after the dip, in first peaks",
+            features.r3,
+            format!("at most {r3:.2}"),
+            within(features.r3, (f64::NEG_INFINITY, r3)),
+        ),
+        line("p1", "first peak [y]", Some(features.p1), String::new(), None),
+        line("t1", "its time from the step [s]", Some(features.t1), String::new(), None),
+        line("sigma", "noise of a sample [y]", Some(features.sigma), String::new(), None),
+    ]
+}
+
+/// What to change in the controller, in words; nothing when there is nothing to change.
+#[must_use]
+pub fn advice(assessment: &Assessment) -> Option<String> {
+    let word = |change, parameter: &str| match change {
+        Change::Raise => format!("raise the {parameter}"),
+        Change::Lower => format!("lower the {parameter}"),
+    };
+    let gain = assessment.advice.kp.map(|change| word(change, "gain"));
+    let time = assessment.advice.ti.map(|change| word(change, "integral time"));
+    let list: Vec<String> = gain.into_iter().chain(time).collect();
+    (!list.is_empty()).then(|| format!("{}, by 10 to 30 %, then repeat the experiment", list.join(", ")))
+}
+
+/// A page that needs nothing else. `command` is what made it.
+#[must_use]
+pub fn assessment_page(experiment: &Experiment<'_>, command: &str) -> String {
+    let assessment = experiment.assessment;
+    let heading = format!("{}: {}", experiment.name, assessment.verdict.name());
+    let text = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (heading) }
+                style { (PreEscaped(STYLE)) (PreEscaped(PAGE_STYLE)) (PreEscaped(OWN_STYLE)) }
+            }
+            body {
+                header {
+                    p class="kind" { "Load-response experiment" }
+                    h1 { (heading) }
+                }
+                main {
+                    (verdict(assessment))
+                    (warnings(assessment))
+                    @if let Some(marks) = &assessment.marks {
+                        h2 id="response" { "Response" }
+                        (picture(&draw(&experiment.signals, marks, &experiment.acceptance), experiment))
+                    }
+                    @if let Some(features) = &assessment.features {
+                        h2 id="features" { "Features" }
+                        (table(features, &experiment.acceptance))
+                    }
+                    h2 id="about" { "How to read it" }
+                    (about())
+                }
+                footer {
+                    h2 id="command" { "How this page was made" }
+                    div class="scroll" role="region" tabindex="0" aria-labelledby="command" {
+                        pre { code { (command) } }
+                    }
+                    p { "controller-sim " (env!("CARGO_PKG_VERSION")) }
+                }
+            }
+        }
+    };
+    text.into_string()
+}
+
+fn verdict(assessment: &Assessment) -> Markup {
+    html! {
+        p class="lead" { strong { (assessment.verdict.name()) } ": " (verdict_line(assessment.verdict)) "." }
+        ul {
+            @for reason in &assessment.reasons { li { (reason) "; " (reason.help()) "." } }
+        }
+        @if let Some(advice) = advice(assessment) { p { strong { "What to change: " } (advice) "." } }
+    }
+}
+
+fn warnings(assessment: &Assessment) -> Markup {
+    html! {
+        @if !assessment.warnings.is_empty() {
+            div class="notes" role="note" aria-label="Warnings" {
+                p { strong { "Before you trust the figures" } }
+                ul { @for warning in &assessment.warnings { li { (warning) } } }
+            }
+        }
+    }
+}
+
+fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
+    let marked = experiment.assessment.marks.as_ref().is_some_and(|marks| marks.peak.is_some());
+    let line = |class: &str| {
+        html! {
+            svg width="30" height="12" aria-hidden="true" { line class={ "l " (class) } x1="0" x2="30" y1="6" y2="6" {} }
+        }
+    };
+    let block = |class: &str| {
+        html! {
+            svg width="30" height="12" aria-hidden="true" { rect class=(class) x="4" width="22" y="0.5" height="11" {} }
+        }
+    };
+    html! {
+        figure class="plot" id="figure-1" {
+            ul class="legend" {
+                li { (line("faint c0")) span { "measurement as recorded (faint)" } }
+                @if marked { li { (line("c0")) span { "smoothed" } } }
+                @if !experiment.signals.setpoint.is_empty() { li { (line("ref")) span { "set-point" } } }
+                li { (block("window")) span { "output held by hand" } }
+                @if marked { li { (block("target")) span { "where the dip belongs" } } }
+            }
+            svg class="canvas" height=(pixel(picture.height)) role="img" aria-labelledby="figure-1-title figure-1-desc" {
+                title id="figure-1-title" {
+                    "Response to the step of the output, " (format_number(picture.time.0)) " s to "
+                    (format_number(picture.time.1)) " s"
+                }
+                desc id="figure-1-desc" { (described(experiment)) }
+                (picture.content)
+            }
+            figcaption {
+                "The dash-dotted line is the mean before the step."
+                @if marked {
+                    " Of a near-optimal loop the dip lies in the box, and the third peak P3 is at most "
+                    (format!("{:.2}", experiment.acceptance.r3)) " first peaks high."
+                }
+            }
+        }
+    }
+}
+
+/// The picture in words.
+fn described(experiment: &Experiment<'_>) -> String {
+    let Some(features) = experiment.assessment.features else {
+        return "Measurement and output over time. No response was measured.".to_owned();
+    };
+    let mut text = format!(
+        "Measurement and output over time. First peak {} after {} s.",
+        format_number(features.p1),
+        format_number(features.t1)
+    );
+    if let (Some(dip), Some(t_ratio), Some(r3)) = (features.dip, features.t_ratio, features.r3) {
+        text.push_str(&format!(
+            " Dip of {dip:.3} first peaks at {t_ratio:.2} times that time, third peak of {r3:.3}."
+        ));
+    }
+    text
+}
+
+fn table(features: &Features, acceptance: &Acceptance) -> Markup {
+    html! {
+        div class="scroll" role="region" tabindex="0" aria-labelledby="features" {
+            table class="features" {
+                thead {
+                    tr {
+                        th scope="col" class="text" { "feature" }
+                        th scope="col" { "value" }
+                        th scope="col" class="text" { "near-optimal" }
+                        th scope="col" class="text" { "in its range" }
+                        th scope="col" class="text" { "what it is" }
+                    }
+                }
+                tbody {
+                    @for line in lines(features, acceptance) {
+                        tr {
+                            th scope="row" { (line.name) }
+                            td { (line.value) }
+                            td class="text" { (line.range) }
+                            td class="text" {
+                                @match line.good { Some(true) => "yes", Some(false) => strong { "no" }, None => "" }
+                            }
+                            td class="text" { (line.about) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn about() -> Markup {
+    html! {
+        p {
+            "The output was stepped by hand while the loop was at rest, and the controller switched back to automatic. To the "
+            "loop this is a step of the load. Under the PI controller with the least integral of the absolute error (IAE) the "
+            "response of nearly every process with dead time has one shape: a first peak P1, a small dip a little after twice its "
+            "time, a small third peak P3. A deep dip means a short integral time, a high P3 or an early dip a high gain; no dip, or "
+            "one before the measurement is back, a long integral time or a low gain. A loop with all three in their "
+            "ranges has an IAE within some 15 % of the best."
+        }
+        p {
+            "A disturbance observer or estimator that reads the output really applied takes no part in the experiment: what is judged "
+            "is the PI controller alone. The method is that of P. Airikka, PI control for load disturbance rejection, 2021."
+        }
+    }
+}
