@@ -92,7 +92,8 @@ impl Changes {
         for reason in reasons {
             let (kp, ti) = match reason {
                 Reason::DipTooDeep(_) => (None, Some(Change::Raise)),
-                Reason::Rings(_) | Reason::DipTooEarly(_) | Reason::Oscillates => (Some(Change::Lower), None),
+                Reason::Rings(_) | Reason::DipTooEarly(_) => (Some(Change::Lower), None),
+                Reason::Oscillates => (Some(Change::Lower), Some(Change::Raise)),
                 Reason::NoDip => (Some(Change::Raise), Some(Change::Lower)),
                 Reason::DipTooShallow(_) => (None, Some(Change::Lower)),
                 Reason::DipTooLate(_) => (Some(Change::Raise), None),
@@ -129,19 +130,16 @@ pub(super) fn judge(shape: &Shape, limits: &Acceptance) -> (Verdict, Vec<Reason>
     if shape.noise > MOST_NOISE && !clear && !shape.oscillates {
         return (Verdict::Inconclusive, vec![Reason::Noise(shape.noise)]);
     }
-    let mut reasons = Vec::new();
-    if shape.oscillates {
-        reasons.push(Reason::Oscillates);
-    }
     let Some((dip, t_ratio, r3)) = shape.dip else {
         return if shape.oscillates {
-            (Verdict::Aggressive, reasons)
+            (Verdict::Aggressive, vec![Reason::Oscillates])
         } else if shape.lowest < limits.dip.0 {
             (Verdict::Aggressive, vec![Reason::DipTooDeep(shape.lowest)])
         } else {
             (Verdict::Sluggish, vec![Reason::NoDip])
         };
     };
+    let mut reasons = Vec::new();
     // Of a response that turns before it is back, the rise from there tells how it swings.
     let swings = if dip > limits.dip.1 { r3 - dip > limits.rise } else { r3 > limits.r3 };
     if dip < limits.dip.0 {
@@ -152,6 +150,9 @@ pub(super) fn judge(shape: &Shape, limits: &Acceptance) -> (Verdict, Vec<Reason>
     }
     if t_ratio < limits.t_ratio.0 && dip <= limits.dip.1 {
         reasons.push(Reason::DipTooEarly(t_ratio));
+    }
+    if reasons.is_empty() && shape.oscillates {
+        reasons.push(Reason::Oscillates);
     }
     if !reasons.is_empty() {
         return (Verdict::Aggressive, reasons);

@@ -92,7 +92,7 @@ impl Reason {
             Self::WithinRanges => "leave the controller as it is",
             Self::DipTooDeep(_) => "make the integral time longer",
             Self::Rings(_) | Self::DipTooEarly(_) => "lower the gain",
-            Self::Oscillates => "lower the gain by half, then repeat the experiment",
+            Self::Oscillates => "lower the gain, and make the integral time longer",
             Self::NoDip => {
                 "raise the gain; if the response stays without a dip, make the integral time shorter"
             }
@@ -141,7 +141,7 @@ impl fmt::Display for Reason {
             Self::DipTooEarly(r) => {
                 write!(f, "the dip comes early, at {r:.2} times the time of the first peak: the gain is too high")
             }
-            Self::Oscillates => f.write_str("the response swings to and fro: the loop is close to instability"),
+            Self::Oscillates => f.write_str("the response swings to and fro: the loop is near instability"),
             Self::NoDip => f.write_str(
                 "the measurement creeps back without a dip: the gain is too low or the integral time too long",
             ),
