@@ -116,7 +116,7 @@ pub fn assessment_table(experiment: &Experiment<'_>) -> String {
     // Writing to a text cannot fail.
     let _ = writeln!(text, "  {}", verdict_line(assessment.verdict));
     if let Some(features) = &assessment.features {
-        let _ = writeln!(text, "\n  {:8} {:>10}  {:14}", "feature", "value", "near-optimal");
+        let _ = writeln!(text, "\n  {:8} {:>10}  near-optimal", "feature", "value");
         for line in lines(features, &experiment.acceptance) {
             let mark = if line.good == Some(false) { "*" } else { " " };
             let range = if line.range.is_empty() { line.about } else { &line.range };

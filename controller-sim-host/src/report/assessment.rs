@@ -92,13 +92,15 @@ pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
 /// What to change in the controller, in words; nothing when there is nothing to change.
 #[must_use]
 pub fn advice(assessment: &Assessment) -> Option<String> {
-    let word = |change, parameter: &str| match change {
-        Change::Raise => format!("raise the {parameter}"),
-        Change::Lower => format!("lower the {parameter}"),
-    };
-    let gain = assessment.advice.kp.map(|change| word(change, "gain"));
-    let time = assessment.advice.ti.map(|change| word(change, "integral time"));
-    let list: Vec<String> = gain.into_iter().chain(time).collect();
+    let gain = assessment.advice.kp.map(|change| match change {
+        Change::Raise => "raise the gain",
+        Change::Lower => "lower the gain",
+    });
+    let time = assessment.advice.ti.map(|change| match change {
+        Change::Raise => "make the integral time longer",
+        Change::Lower => "make the integral time shorter",
+    });
+    let list: Vec<&str> = gain.into_iter().chain(time).collect();
     (!list.is_empty()).then(|| format!("{}, by 10 to 30 %, then repeat the experiment", list.join(", ")))
 }
 
