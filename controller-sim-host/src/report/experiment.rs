@@ -114,6 +114,9 @@ fn range(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     points.iter().map(|point| point.1).fold(None, join)
 }
 
+/// Class, points, whether the value is held to the next point.
+type Line<'a> = (&'a str, &'a [(f64, f64)], bool);
+
 /// A panel: two axes and where things are between them.
 struct Frame<'a> {
     time: (f64, f64),
@@ -159,8 +162,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Lines over one another: class, points, whether the value is held to the next point.
-    fn lines(&self, list: &[(&str, &[(f64, f64)], bool)]) -> Markup {
+    /// Lines over one another.
+    fn lines(&self, list: &[Line<'_>]) -> Markup {
         html! {
             svg class="p" y=(pixel(self.top)) width="100%" height=(pixel(self.height))
                 viewBox={ "0 0 " (COLUMNS) " " (self.height) } preserveAspectRatio="none" {
