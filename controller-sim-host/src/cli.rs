@@ -6,6 +6,7 @@ mod design;
 mod examples;
 mod execute;
 mod gallery;
+mod identify;
 mod input;
 mod interrupt;
 mod outputs;
@@ -92,6 +93,7 @@ pub fn main() -> ExitCode {
         Some(Command::Run(arguments)) => run::run(&arguments, json, &command),
         Some(Command::Design(arguments)) => design::run(&arguments, json, &command),
         Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),
+        Some(Command::Identify(arguments)) => identify::run(&arguments, json, &command),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),
         Some(Command::Schema) => pages::schema(),

@@ -2,6 +2,7 @@
 
 use super::examples;
 use super::wish::Wish;
+use super::identify::IdentifyArguments;
 use crate::simulate::Precision;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use controller_design::design::Method;
@@ -28,6 +29,8 @@ pub(super) enum Command {
     Design(DesignArguments),
     /// Judges from a recorded experiment whether a PI loop is tuned for loads
     Assess(super::assess::AssessArguments),
+    /// Finds areas and a model of the process in a recorded change between two steady states
+    Identify(IdentifyArguments),
     /// Prints the completions for a shell
     Completions(CompletionsArguments),
     /// Prints the manual page

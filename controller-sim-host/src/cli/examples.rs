@@ -7,6 +7,7 @@ Examples:
   controller-sim run my.toml                     run a scenario and compare its controllers
   controller-sim run my.toml --report my.html    with plots, as a page for the browser
   controller-sim demo --list                     everything that is built in
+  controller-sim identify step.csv               a model from a recorded step
 
 In the source tree write `cargo sim` for `controller-sim`.
 
@@ -55,6 +56,15 @@ Examples:
   controller-sim assess log.csv --step-at 754 --auto-at 757
 
 Exit codes: 0 with a verdict, 3 when the record does not tell (with the reason), 2 bad input.";
+pub(super) const IDENTIFY: &str = "\
+Examples:
+  controller-sim identify step.csv                            the columns by their names, or in this order
+  controller-sim identify log.csv --time t --input MV --output PV
+  controller-sim identify log.csv --input 4 --output 2 --report log.html
+  controller-sim identify samples.csv --ts 0.1                rows 0.1 s apart, without a column of times
+  logger | controller-sim identify - --json
+
+The log shows a change of the input (a step, a ramp, a closed loop that moves) from one steady state to another.";
 
 pub(super) const COMPLETIONS: &str = "\
 Examples:

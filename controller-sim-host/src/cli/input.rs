@@ -1,4 +1,4 @@
-//! Reading the text of a scenario from a file or the standard input.
+//! Reading the text of a scenario or a log from a file or the standard input.
 
 use crate::output::Problem;
 use std::fs::{self, File};
@@ -8,28 +8,34 @@ use std::path::Path;
 /// Longest text, in bytes: a scenario is written by a person.
 const LONGEST: u64 = 16 << 20;
 
+/// Longest log, in bytes.
+const LONGEST_LOG: u64 = 512 << 20;
+
+/// A kind of input, for messages.
+struct Kind {
+    name: &'static str,
+    longest: u64,
+    missing: &'static str,
+    pipe: &'static str,
+}
+
+const SCENARIO: Kind = Kind {
+    name: "scenario",
+    longest: LONGEST,
+    missing: "write a first scenario by `controller-sim demo --save`",
+    pipe: "to read from a pipe: `controller-sim run -`",
+};
+
+const LOG: Kind = Kind {
+    name: "log",
+    longest: LONGEST_LOG,
+    missing: "give the name of a CSV file",
+    pipe: "to read from a pipe, give `-`",
+};
+
 /// The name and the text of the scenario at `path`; `-` is the standard input.
 pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
-    let (name, bytes) = if path.as_os_str() == "-" {
-        ("<stdin>".to_owned(), read_all(io::stdin().lock()))
-    } else {
-        let name = path.display().to_string();
-        check_kind(path, &name)?;
-        (name, File::open(path).and_then(read_all))
-    };
-    let bytes = bytes.map_err(|error| {
-        let problem = Problem::new("file", format!("cannot read `{name}`: {error}"));
-        match error.kind() {
-            io::ErrorKind::NotFound => problem.help("write a first scenario by `controller-sim demo --save`"),
-            _ => problem,
-        }
-    })?;
-    if bytes.len() as u64 > LONGEST {
-        return Err(Problem::new(
-            "file",
-            format!("`{name}` is longer than {LONGEST} bytes: it is no scenario"),
-        ));
-    }
+    let (name, bytes) = load(path, &SCENARIO)?;
     match String::from_utf8(bytes) {
         Ok(text) => Ok((name, text)),
         Err(error) => {
@@ -41,22 +47,50 @@ pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
     }
 }
 
+/// The name and the text of the log at `path`; `-` is the standard input.
+pub(super) fn read_log(path: &Path) -> Result<(String, String), Problem> {
+    let (name, bytes) = load(path, &LOG)?;
+    Ok((name, crate::log::decode(&bytes)))
+}
+
+fn load(path: &Path, kind: &Kind) -> Result<(String, Vec<u8>), Problem> {
+    let (name, bytes) = if path.as_os_str() == "-" {
+        ("<stdin>".to_owned(), read_all(io::stdin().lock(), kind))
+    } else {
+        let name = path.display().to_string();
+        check_kind(path, &name, kind)?;
+        (name, File::open(path).and_then(|file| read_all(file, kind)))
+    };
+    let bytes = bytes.map_err(|error| {
+        let problem = Problem::new("file", format!("cannot read `{name}`: {error}"));
+        match error.kind() {
+            io::ErrorKind::NotFound => problem.help(kind.missing),
+            _ => problem,
+        }
+    })?;
+    if bytes.len() as u64 > kind.longest {
+        let message = format!("`{name}` is longer than {} bytes: it is no {}", kind.longest, kind.name);
+        return Err(Problem::new("file", message));
+    }
+    Ok((name, bytes))
+}
+
 /// A directory has no text, and opening a pipe waits for a writer that may never come.
-fn check_kind(path: &Path, name: &str) -> Result<(), Problem> {
+fn check_kind(path: &Path, name: &str, kind: &Kind) -> Result<(), Problem> {
     let Ok(found) = fs::metadata(path) else { return Ok(()) };
     if found.is_dir() {
         let problem = Problem::new("file", format!("`{name}` is a directory"));
-        return Err(problem.help("give a scenario file in it"));
+        return Err(problem.help(format!("give a {} file in it", kind.name)));
     }
     if !found.is_file() {
         let problem = Problem::new("file", format!("`{name}` is not a regular file"));
-        return Err(problem.help("to read from a pipe: `controller-sim run -`"));
+        return Err(problem.help(kind.pipe));
     }
     Ok(())
 }
 
-fn read_all(from: impl Read) -> io::Result<Vec<u8>> {
+fn read_all(from: impl Read, kind: &Kind) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    from.take(LONGEST + 1).read_to_end(&mut bytes)?;
+    from.take(kind.longest + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }

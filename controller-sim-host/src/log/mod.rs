@@ -13,8 +13,10 @@
 
 mod cells;
 mod choose;
+mod decode;
 mod read;
 mod time;
 
 pub use choose::{Column, Role};
+pub use decode::decode;
 pub use read::{Log, read};

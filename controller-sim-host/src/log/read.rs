@@ -31,7 +31,8 @@ pub struct Log {
     pub remarks: Vec<Fault>,
 }
 
-/// Reads the log `text` of the file `file`; the first of `roles` are the times.
+/// Reads the log `text` of the file `file`; the first of `roles` are the times. Without a column of times, where there
+/// need not be one, they are the numbers of the rows, from 0.
 ///
 /// # Errors
 /// The first fault, with its place in the text: no table, a column that is not there or not clear, a time that goes back,
@@ -60,12 +61,16 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
         units: chosen.iter().map(|c| title(c, &table.units)).collect(),
         ..Log::default()
     };
-    let time_column = chosen.first().copied().flatten().unwrap_or(0);
+    let time_column = chosen.first().copied().flatten();
     let mut clock = Clock::new(&log);
     let mut skipped: Vec<Fault> = Vec::new();
     for row in &table.rows {
         let mut values = Vec::with_capacity(chosen.len());
-        let found = table.time(row, time_column).and_then(|t| {
+        let time = match time_column {
+            Some(column) => table.time(row, column),
+            None => Ok((log.times.len() as f64, Kind::Number)),
+        };
+        let found = time.and_then(|t| {
             for column in chosen.iter().skip(1).flatten() {
                 values.push(table.value(row, *column)?);
             }
@@ -78,6 +83,7 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
                 continue;
             }
         };
+        let time_column = time_column.unwrap_or(0);
         let t = clock.seconds(t, kind).map_err(|why| table.fault(row, time_column, why))?;
         if let Some(last) = log.times.last().filter(|last| t < **last) {
             let message =

@@ -17,7 +17,7 @@ pub(super) const LEFT: f64 = 66.0;
 /// Space for half a number of the time axis \[px\].
 pub(super) const RIGHT: f64 = 14.0;
 /// Columns that a panel is divided into, whatever its width.
-const COLUMNS: f64 = 1000.0;
+pub(super) const COLUMNS: f64 = 1000.0;
 /// Height of a line of event numbers \[px\].
 const MARK: f64 = 18.0;
 /// Height of a panel's title \[px\].

@@ -10,6 +10,7 @@ mod chapter;
 mod describe;
 mod drawing;
 mod experiment;
+mod identification;
 mod legend;
 mod marks;
 mod overview;
@@ -25,6 +26,7 @@ mod words;
 pub use assessment::{Experiment, Line, advice, assessment_page, lines, verdict_line};
 pub use experiment::Signals;
 
+use crate::output::Identification;
 use crate::scenario::{Fault, Scenario};
 use crate::simulate::{Precision, RunResult};
 
@@ -70,4 +72,11 @@ pub fn page(chapters: &[Chapter<'_>], command: &str) -> String {
 #[must_use]
 pub fn figure(chapter: &Chapter<'_>) -> String {
     standalone::figure(chapter)
+}
+
+/// The page of an identified process: the record with the model's response, residuals, areas, model, warnings. `command` is
+/// what made it. Cost: some 100 kB, whatever the length of the record.
+#[must_use]
+pub fn identification(finding: &Identification<'_>, command: &str) -> String {
+    identification::page(finding, command)
 }

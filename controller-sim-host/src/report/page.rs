@@ -16,6 +16,24 @@ pub(super) fn page(chapters: &[Chapter<'_>], command: &str) -> String {
         several => format!("Simulation report: {} runs", several.len()),
     };
     let sweeps = sweeps(chapters);
+    let content = html! {
+        @if several { (contents(chapters, &sweeps)) }
+        main {
+            @for (index, sweep) in sweeps.iter().enumerate() {
+                @let id = format!("sweep-{}", index + 1);
+                section id=(id) aria-labelledby={ (id) "-heading" } {
+                    h2 id={ (id) "-heading" } { (sweep.name()) }
+                    (sweep.show(chapters, &id))
+                }
+            }
+            @for index in 0..chapters.len() { (chapter::show(index, chapters)) }
+        }
+    };
+    document("Simulation of control loops", &heading, &content, command)
+}
+
+/// A page: what kind it is, its heading, what it shows, and the command that made it.
+pub(super) fn document(kind: &str, heading: &str, content: &Markup, command: &str) -> String {
     let text = html! {
         (DOCTYPE)
         html lang="en" {
@@ -28,20 +46,10 @@ pub(super) fn page(chapters: &[Chapter<'_>], command: &str) -> String {
             }
             body {
                 header {
-                    p class="kind" { "Simulation of control loops" }
+                    p class="kind" { (kind) }
                     h1 { (heading) }
                 }
-                @if several { (contents(chapters, &sweeps)) }
-                main {
-                    @for (index, sweep) in sweeps.iter().enumerate() {
-                        @let id = format!("sweep-{}", index + 1);
-                        section id=(id) aria-labelledby={ (id) "-heading" } {
-                            h2 id={ (id) "-heading" } { (sweep.name()) }
-                            (sweep.show(chapters, &id))
-                        }
-                    }
-                    @for index in 0..chapters.len() { (chapter::show(index, chapters)) }
-                }
+                (content)
                 footer {
                     h2 id="command" { "How this page was made" }
                     div class="scroll" role="region" tabindex="0" aria-labelledby="command" {

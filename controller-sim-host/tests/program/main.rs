@@ -6,6 +6,7 @@ mod features;
 mod files;
 mod folder;
 mod gallery;
+mod identify;
 #[cfg(unix)]
 mod interrupt;
 mod pages;

@@ -3,6 +3,7 @@
 use crate::folder::{Folder, json, text};
 
 const COMMANDS: [&str; 6] = ["assess", "run", "demo", "completions", "man", "schema"];
+const COMMANDS: [&str; 6] = ["run", "demo", "identify", "completions", "man", "schema"];
 
 #[test]
 fn every_command_has_a_help_with_examples() {
