@@ -159,8 +159,18 @@ pub(super) fn raw(record: &Record, fits: Option<&Fits>, settled: usize, tf: f64)
 
 /// The areas of the fit. Its intervals reach over those of the next richer structure: what the record cannot tell
 /// apart is not known.
-pub(super) fn fitted(fits: &Fits, tf: f64) -> Estimate {
-    let of = |fit: &super::fit::Fitted| Estimate::new(fit.areas(), &fit.area_covariance(), &[0.0; COUNT], tf);
+pub(super) fn fitted(record: &Record, fits: &Fits, tf: f64) -> Estimate {
+    // What a converter's steps do to both steady states changes the gain and with it all areas alike.
+    let steady = record.noise.steady_quantisation() / record.moves.by.iter().sum::<f64>();
+    let of = |fit: &super::fit::Fitted| {
+        let (areas, mut covariance) = (fit.areas(), fit.area_covariance());
+        for (k, row) in covariance.iter_mut().enumerate() {
+            for (l, place) in row.iter_mut().enumerate() {
+                *place += 2.0 * steady * steady * (areas[k] / areas[0]) * (areas[l] / areas[0]);
+            }
+        }
+        Estimate::new(areas, &covariance, &[0.0; COUNT], tf)
+    };
     let mut estimate = of(&fits.best);
     if let Some(richer) = fits.richer.as_ref().map(of) {
         for k in 0..COUNT {

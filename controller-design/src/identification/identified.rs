@@ -14,8 +14,8 @@ use crate::{Refusal, Warning, Warnings};
 /// Largest spread of `K_P` with which raw areas are used, and the one with which they are whatever the fit says.
 const MOST_SPREAD: f64 = 0.1;
 const GOOD_SPREAD: f64 = 0.002;
-/// Largest spread of `K_P` with which anything is concluded.
-const MOST_SPREAD_OF_ALL: f64 = 1.0;
+/// Spread of `K_P` from which a person should look at the model before using gains.
+const WIDE_SPREAD: f64 = 0.3;
 /// Share of the change that may still be to come at the end, and the share from which that is said.
 const MOST_UNSETTLED: f64 = 0.05;
 const UNSETTLED: f64 = 0.01;
@@ -163,7 +163,7 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
     }
     let mut record = Record::new(recording, options)?;
     let mut warnings = Warnings::new();
-    let fits = structures::fits(&record);
+    let mut fits = structures::fits(&record);
     if let Some(best) = fits.as_ref().map(|fits| &fits.best) {
         record.noise.confirm(best.rms, best.colour);
     }
@@ -173,7 +173,14 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
     let mean_time = fits.as_ref().map(|fits| fits.best.areas()).map_or(0.05, |areas| areas[1] / areas[0]);
     let tf = options.tf.map_or(mean_time.clamp(0.0, 1.0) / 25.0, |tf| tf / record.time);
     let raw = estimate::raw(&record, fits.as_ref(), settling.row, tf);
-    let fitted = fits.as_ref().map(|fits| estimate::fitted(fits, tf));
+    let mut fitted = fits.as_ref().map(|fits| estimate::fitted(&record, fits, tf));
+    if let (Some(fits), Some(of)) = (&mut fits, &mut fitted)
+        && of.kp.is_none()
+    {
+        // Two lags and dead time always have a controller; a richer fit need not.
+        (fits.best, fits.richer) = (fits.second_order.clone(), None);
+        *of = estimate::fitted(&record, fits, tf);
+    }
     let explained = fits.as_ref().is_some_and(|fits| unexplained(&record, &fits.best) <= 1.0);
     let chosen = choose(&raw.estimate, fitted.as_ref(), explained, &mut warnings);
     let best = match (chosen, &fitted) {
@@ -181,13 +188,17 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
         _ => &raw.estimate,
     };
     let kp = gains::kp(&best.areas, tf)?;
-    if best.kp_spread > MOST_SPREAD_OF_ALL {
+    if !best.kp_spread.is_finite() {
         return Err(Refusal::Data {
-            why: "noise hides how the output moves: the controller gain is uncertain by more than its size",
+            why: "noise hides how the output moves: no controller gain can be told",
             help: "make a larger change of the input, record a longer steady state after it, or filter less noise in",
         });
     }
     remarks(&record, fits.as_ref(), &mut warnings);
+    if best.kp_spread > WIDE_SPREAD {
+        let text = "gains that follow from the areas are uncertain: use a longer filter or a larger change of the input";
+        let _ = warnings.push(Warning::Value { about: "kp_spread", value: best.kp_spread, text });
+    }
     let unfit = match Reduced::new(&Areas::new(best.areas)) {
         Ok(reduced) => reduced.fallback,
         Err(_) => true,

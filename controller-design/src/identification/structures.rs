@@ -29,7 +29,7 @@ pub(super) fn fits(record: &Record) -> Option<Fits> {
     let mut richer = None;
     for order in 3..=4 {
         let Some(next) = with(Shape { order, zero: false }, &extended(&best)) else { break };
-        if criterion(&next) + CLEARLY >= criterion(&best) {
+        if !explains_more(&next, &best) {
             richer = Some(next);
             break;
         }
@@ -49,8 +49,7 @@ pub(super) fn fits(record: &Record) -> Option<Fits> {
                 from.iter_mut().for_each(|times| times[3] = 0.3 * times[1]);
                 from.extend(extended(&second_order));
             }
-            if let Some(next) = with(shape, &from).filter(|next| criterion(next) + CLEARLY < criterion(&best))
-            {
+            if let Some(next) = with(shape, &from).filter(|next| explains_more(next, &best)) {
                 richer = Some(core::mem::replace(&mut best, next));
             }
         }
@@ -58,11 +57,15 @@ pub(super) fn fits(record: &Record) -> Option<Fits> {
     Some(Fits { second_order, best, richer })
 }
 
-/// Schwarz's criterion, correlated residuals counted as fewer.
-fn criterion(fit: &Fitted) -> f64 {
-    let rows = fit.rows as f64;
-    let misfit = (fit.squares / rows).max(ARITHMETIC * ARITHMETIC);
-    rows * libm::log(misfit) + fit.shape.parameters() as f64 * libm::log(rows)
+/// Whether a richer fit is clearly better by Schwarz's criterion, in which correlated residuals count as fewer, and has no
+/// lag that is longer than the record.
+fn explains_more(richer: &Fitted, simpler: &Fitted) -> bool {
+    let rows = (richer.rows as f64 / richer.colour).max(2.0);
+    let criterion = |fit: &Fitted| {
+        let misfit = (fit.squares / fit.rows as f64).max(ARITHMETIC * ARITHMETIC);
+        rows * libm::log(misfit) + fit.shape.parameters() as f64 * libm::log(rows)
+    };
+    richer.slowest() <= 1.0 && criterion(richer) + CLEARLY < criterion(simpler)
 }
 
 /// `A_1/A_0` of the whole record, roughly: lags and dead time together.
