@@ -160,13 +160,14 @@ pub(super) fn raw(record: &Record, fits: Option<&Fits>, settled: usize, tf: f64)
 /// The areas of the fit. Its intervals reach over those of the next richer structure: what the record cannot tell
 /// apart is not known.
 pub(super) fn fitted(record: &Record, fits: &Fits, tf: f64) -> Estimate {
-    // What a converter's steps do to both steady states changes the gain and with it all areas alike.
+    // What a converter's steps do to the first steady state changes the gain and with it all areas alike; the last one is
+    // in the covariance of the fit.
     let steady = record.noise.steady_quantisation() / record.moves.by.iter().sum::<f64>();
     let of = |fit: &super::fit::Fitted| {
         let (areas, mut covariance) = (fit.areas(), fit.area_covariance());
         for (k, row) in covariance.iter_mut().enumerate() {
             for (l, place) in row.iter_mut().enumerate() {
-                *place += 2.0 * steady * steady * (areas[k] / areas[0]) * (areas[l] / areas[0]);
+                *place += steady * steady * (areas[k] / areas[0]) * (areas[l] / areas[0]);
             }
         }
         Estimate::new(areas, &covariance, &[0.0; COUNT], tf)

@@ -222,7 +222,16 @@ pub(super) fn fit(record: &Record, shape: Shape, starts: &[Times], until: f64) -
     let variance = best.squares / degrees as f64 * colour;
     let normal = linearised(&rows, shape, &times, &best, 1e-2);
     // A time at its bound is known there no better than elsewhere; only what the record says nothing about is left out.
-    let covariance = normal.inverse(variance)?;
+    let mut covariance = normal.inverse(variance)?;
+    // Rows at rest all have the same error of a coarse converter: what it does to every parameter.
+    let rest = Trial { residuals: at_rest(&rows, &best), ..best };
+    let moved = linearised(&rows, shape, &times, &rest, 1e-2).solve(1e-9, &[]).unwrap_or([0.0; MOST]);
+    let best = rest;
+    for (row, a) in covariance.iter_mut().zip(moved) {
+        for (place, b) in row.iter_mut().zip(moved) {
+            *place += a * b;
+        }
+    }
     let rms = libm::sqrt(best.squares / count as f64);
     Some(Fitted {
         shape,
@@ -234,6 +243,17 @@ pub(super) fn fit(record: &Record, shape: Shape, starts: &[Times], until: f64) -
         colour,
         covariance,
     })
+}
+
+/// For each row the error of the converter that it shares with all rows at the end, 0 for those that still move.
+fn at_rest(rows: &Rows<'_>, trial: &Trial) -> Vec<f64> {
+    let noise = &rows.record.noise;
+    let x = &trial.columns.0;
+    let end = x.last().copied().unwrap_or(1.0);
+    let still = |x: &f64| ((end - x) * trial.linear[1]).abs() < 0.5 * noise.quantisation;
+    let from = x.iter().rposition(|x| !still(x)).map_or(0, |last| last + 1);
+    let error = noise.steady_quantisation();
+    (0..x.len()).map(|i| if i >= from { error } else { 0.0 }).collect()
 }
 
 impl Fitted {
