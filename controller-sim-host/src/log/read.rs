@@ -242,7 +242,8 @@ impl<'t> Table<'t> {
             units: Vec::new(),
             rows: Vec::new(),
         };
-        let (mut above, mut comment): (Vec<(Line, Range<usize>)>, Option<Range<usize>>) = (Vec::new(), None);
+        let mut above: Vec<(Line, Range<usize>)> = Vec::new();
+        let mut comment = None;
         for (number, span) in lines(text) {
             table.spans.push(span.clone());
             let line = &text[span.clone()];

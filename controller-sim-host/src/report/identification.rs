@@ -1,6 +1,6 @@
 //! The page of an identified process.
 
-use super::drawing::{COLUMNS, LEFT, RIGHT, percent, pixel, time_axis};
+use super::drawing::{COLUMNS, LEFT, percent, pixel, time_axis};
 use super::page::document;
 use super::path::{Between, Pen, hundredths};
 use super::scale::Axis;
@@ -298,6 +298,3 @@ fn path(line: &Line<'_>, t: &[f64], x: &dyn Fn(f64) -> i64, y: &dyn Fn(f64) -> i
     }
     pen.finish()
 }
-
-// The picture is as wide as the page less these; the style sheet of pages says it.
-const _: () = assert!(LEFT == 66.0 && RIGHT == 14.0);
