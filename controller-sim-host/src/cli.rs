@@ -1,5 +1,6 @@
 //! The command line: arguments, exit codes, what goes to which stream.
 
+mod analyze;
 mod arguments;
 mod assess;
 mod design;
@@ -90,6 +91,7 @@ pub fn main() -> ExitCode {
     let done = match arguments.command {
         None => gallery::run(&DemoArguments::default(), json, &command),
         Some(Command::Demo(arguments)) => gallery::run(&arguments, json, &command),
+        Some(Command::Analyze(arguments)) => analyze::run(&arguments, json, &command),
         Some(Command::Run(arguments)) => run::run(&arguments, json, &command),
         Some(Command::Design(arguments)) => design::run(&arguments, json, &command),
         Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),

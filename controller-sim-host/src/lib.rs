@@ -3,6 +3,7 @@
 //! * [`scenario`]: what is to be run, read from TOML with every mistake at its line and column.
 //! * [`simulate`]: the run itself and its indices.
 //! * [`log`]: logs of real processes, read from CSV.
+//! * [`analysis`]: margins and noise of the loops of a scenario.
 //! * [`plant`]: plants that move exactly between the samples.
 //! * [`output`]: tables, JSON, CSV, messages with carets.
 //! * [`report`]: pages and pictures.
@@ -23,6 +24,7 @@
 #![forbid(unsafe_code)]
 
 pub mod advise;
+pub mod analysis;
 pub mod cli;
 pub mod demo;
 pub mod design_file;

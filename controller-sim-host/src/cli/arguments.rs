@@ -23,6 +23,8 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Runs scenarios and compares their controllers
     Run(RunArguments),
+    /// Gives margins, sensitivity and noise of loops: of the continuous design and of the law that runs
+    Analyze(super::analyze::AnalyzeArguments),
     /// Runs a built-in scenario, lists them, or writes one to a file
     Demo(DemoArguments),
     /// Designs a controller for a plant
@@ -160,7 +162,7 @@ fn groups() -> [ArgGroup; 2] {
     ["files", "pictures"].map(|name| ArgGroup::new(name).multiple(true))
 }
 
-fn key_and_value(text: &str) -> Result<(String, String), String> {
+pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
     // A `=` in quotes belongs to a name.
     let mut quote = None;
     let split = text.find(|c| {

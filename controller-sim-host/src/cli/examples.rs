@@ -6,6 +6,7 @@ Examples:
   controller-sim demo --save my.toml             write it to a file, to change it
   controller-sim run my.toml                     run a scenario and compare its controllers
   controller-sim run my.toml --report my.html    with plots, as a page for the browser
+  controller-sim analyze my.toml                 margins and noise of its loops
   controller-sim demo --list                     everything that is built in
   controller-sim identify step.csv               a model from a recorded step
 
@@ -24,6 +25,14 @@ Examples:
   controller-sim run my.toml --set latency=0.05 --set 'plant.tf=\"exp(-s)/(1+2*s)\"'
   controller-sim run my.toml --set 'controller.\"PI + DOB\".observer.alpha=0.2'
   cat my.toml | controller-sim run - --json";
+
+pub(super) const ANALYZE: &str = "\
+Examples:
+  controller-sim analyze my.toml                           each controller of a scenario or design file
+  controller-sim analyze my.toml --report my.html          with Bode and Nyquist plots
+  controller-sim analyze my.toml --set latency=0.05
+  controller-sim analyze --plant 'exp(-0.2*s)/((1+0.2*s)*(1+s))' --kp 2 --ki 1.6 --ts 0.01
+  controller-sim analyze --plant 'exp(-s)/(1+s)' --kp 0.6 --ki 0.5 --ts 0.05 --alpha 0.4 --json";
 
 pub(super) const DEMO: &str = "\
 Examples:

@@ -5,7 +5,7 @@ use super::input;
 use super::quoting::quoted;
 use crate::demo::BuiltIn;
 use crate::output::{Problem, Source, Trouble};
-use crate::scenario::{Case, Fault, Files, FolderFiles, SourceText, override_key, read_with};
+use crate::scenario::{Case, Fault, Files, FolderFiles, NoFiles, SourceText, override_key, read_with};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
@@ -61,6 +61,13 @@ pub(super) fn read_files(paths: &[PathBuf], options: &Options) -> Inputs {
             Err(problem) => inputs.troubles.push(problem.into()),
         }
     }
+    inputs
+}
+
+/// Reads a text that stands in no file.
+pub(super) fn read_text(name: &str, text: String, options: &Options) -> Inputs {
+    let mut inputs = Inputs::default();
+    inputs.read(name.to_owned(), text, options, &NoFiles);
     inputs
 }
 

@@ -5,6 +5,7 @@
 
 mod advice;
 mod assessment;
+pub(crate) mod analysis;
 mod csv;
 mod design;
 mod design_json;
@@ -20,6 +21,7 @@ pub(crate) mod table;
 pub use self::parquet::ParquetWriter;
 pub use advice::{advice_json, advice_table};
 pub use assessment::{assessment_json, assessment_table};
+pub use analysis::{Analysed, analysis_json, analysis_table};
 pub use csv::CsvWriter;
 pub use design::design_table;
 pub use design_json::design_json;

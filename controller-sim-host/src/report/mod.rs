@@ -5,6 +5,7 @@
 //! metrics and the parameters, and has the text of the scenario in it to repeat the run.
 
 mod assessment;
+mod analysis;
 mod bands;
 mod chapter;
 mod describe;
@@ -66,6 +67,12 @@ impl Chapter<'_> {
 #[must_use]
 pub fn page(chapters: &[Chapter<'_>], command: &str) -> String {
     page::page(chapters, command)
+}
+
+/// A page with the analysis of each case: numbers, Bode and Nyquist plots, sensitivities, noise; as [`page`] otherwise.
+#[must_use]
+pub fn analysis_page(list: &[crate::output::Analysed<'_>], command: &str) -> String {
+    analysis::page(list, command)
 }
 
 /// The picture of a chapter as an SVG file of its own.

@@ -67,6 +67,35 @@ impl Axis {
         }
     }
 
+    /// The axis of frequencies, exactly from the first to the last, by their ratios.
+    pub(super) fn of_frequencies((lo, hi): (f64, f64)) -> Self {
+        let mut axis = Self::by_ratio(lo, if hi > lo { hi } else { 10.0 * lo }, FEW);
+        let room = 0.06 / 1.12 * (axis.hi - axis.lo);
+        let (start, end) = (axis.lo + room, axis.hi - room);
+        for tick in &mut axis.ticks {
+            tick.share = (axis.lo + tick.share * (axis.hi - axis.lo) - start) / (end - start);
+        }
+        axis.ticks.retain(|tick| (-1e-9..=1.0 + 1e-9).contains(&tick.share));
+        axis.between.clear();
+        (axis.lo, axis.hi) = (start, end);
+        axis
+    }
+
+    /// The axis of angles in degrees, ticks at multiples of 45, 90 or 180.
+    pub(super) fn degrees((lo, hi): (f64, f64)) -> Self {
+        let (start, end) = (lo - 10.0, hi + 10.0);
+        let steps = [45_i64, 90, 180];
+        let step = steps.into_iter().find(|step| (end - start) / (*step as f64) <= 7.0).unwrap_or(180);
+        let range = (start / step as f64).ceil() as i64..=(end / step as f64).floor() as i64;
+        let tick = |k: i64| Tick {
+            share: ((k * step) as f64 - start) / (end - start),
+            label: decimal(k * step, 0),
+            minor: false,
+        };
+        let ticks = range.map(tick).collect();
+        Self { lo: start, hi: end, ticks, between: Vec::new(), origin: 0.0, power: 0, ratios: false }
+    }
+
     fn by_ratio(lo: f64, hi: f64, most: usize) -> Self {
         let (start, end) = (libm::log10(lo), libm::log10(hi));
         let room = 0.06 * (end - start);

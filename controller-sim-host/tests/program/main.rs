@@ -1,6 +1,7 @@
 //! The program as it is called: exit codes, streams, JSON, files.
 
 mod assess;
+mod analyze;
 mod faults;
 mod features;
 mod files;

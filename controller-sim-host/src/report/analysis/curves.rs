@@ -1,0 +1,98 @@
+//! The responses of a loop over frequency, continuous and sampled.
+
+use crate::analysis::Analysis;
+use controller_design::model::Complex;
+use core::f64::consts::{PI, TAU};
+
+/// Points of a curve besides those that the loop asks for.
+const POINTS: u32 = 500;
+/// Most points that the loop may ask for.
+const MOST: usize = 3000;
+
+/// A response at one frequency.
+pub(super) struct At {
+    /// Frequency \[rad/s\].
+    pub(super) omega: f64,
+    pub(super) open: Complex,
+    /// Phase of the loop gain \[deg\], without jumps.
+    pub(super) phase: f64,
+    pub(super) sensitivity: f64,
+    pub(super) complementary: f64,
+    pub(super) noise: f64,
+}
+
+/// The curves of a controller.
+pub(super) struct Curves {
+    /// Its place in the order of controllers.
+    pub(super) index: usize,
+    pub(super) name: String,
+    pub(super) continuous: Vec<At>,
+    pub(super) sampled: Vec<At>,
+    /// Nyquist frequency \[rad/s\].
+    pub(super) nyquist: f64,
+    /// Ms and Mt of the sampled loop with their frequencies, when it is stable.
+    pub(super) peaks: Option<[(f64, f64); 2]>,
+    pub(super) ms: Option<f64>,
+}
+
+pub(super) fn curves(index: usize, a: &Analysis) -> Curves {
+    let ts = a.sampled.ts();
+    let nyquist = PI / ts;
+    let crossover = match (&a.discrete.margins, &a.continuous.margins) {
+        (Ok(m), _) | (Err(_), Ok(m)) => m.omega_pm.unwrap_or(m.omega_ms).min(m.omega_ms),
+        _ => 0.1 * nyquist,
+    };
+    let low = (crossover * 0.01).min(0.1 * nyquist);
+    let ratio = nyquist / low;
+    let mut places: Vec<f64> =
+        (0..=POINTS).map(|k| low * libm::pow(ratio, f64::from(k) / f64::from(POINTS))).collect();
+    let asked: Vec<f64> = a.sampled.angles().iter().map(|t| t / ts).filter(|w| *w > low).collect();
+    places.extend(asked.iter().step_by(asked.len() / MOST + 1));
+    places.push(nyquist);
+    places.retain(|w| *w <= nyquist);
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+
+    let continuous = places.iter().map(|&w| {
+        let (s, t) = (a.design.sensitivity(w), a.design.complementary(w));
+        (w, a.design.loop_gain(w), s, t, a.design.noise_response(w))
+    });
+    let continuous = unwrapped(continuous);
+    let sampled = unwrapped(places.iter().map(|&w| {
+        let p = a.sampled.at((w * ts).min(PI));
+        (w, p.open(), p.sensitivity(), p.complementary(), p.noise())
+    }));
+    let margins = a.discrete.margins.as_ref().ok();
+    Curves {
+        index,
+        name: a.name.clone(),
+        continuous,
+        sampled,
+        nyquist,
+        peaks: margins.map(|m| [(m.omega_ms, m.ms), (m.omega_mt, m.mt)]),
+        ms: margins.map(|m| m.ms),
+    }
+}
+
+/// The responses with a phase that does not jump, begun between -360 and 0 deg.
+fn unwrapped(list: impl Iterator<Item = (f64, Complex, Complex, Complex, Complex)>) -> Vec<At> {
+    let mut last: Option<f64> = None;
+    list.map(|(omega, open, s, t, n)| {
+        let raw = open.arg();
+        let phase = match last {
+            None if raw > 0.0 => raw - TAU,
+            None => raw,
+            Some(before) => raw + TAU * libm::round((before - raw) / TAU),
+        };
+        last = Some(phase);
+        At {
+            omega,
+            open,
+            phase: phase.to_degrees(),
+            sensitivity: s.abs(),
+            complementary: t.abs(),
+            noise: n.abs(),
+        }
+    })
+    .collect()
+}
