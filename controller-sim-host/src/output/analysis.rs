@@ -206,10 +206,10 @@ pub fn analysis_table(one: &Analysed<'_>) -> String {
         match result {
             Err((name, why)) => out.push_str(&format!("\n{name}\n  {why}\n")),
             Ok(a) => {
-                out.push_str(&format!("\n{}\n  {:52}{:>12}{:>12}\n", a.name, "", "continuous", "sampled"));
+                out.push_str(&format!("\n{}\n  {:54}{:>12}{:>12}\n", a.name, "", "continuous", "sampled"));
                 for (what, unit, c, d) in rows(a) {
                     let unit = if unit.is_empty() { String::new() } else { format!("[{unit}]") };
-                    out.push_str(&format!("  {what:42}{unit:10}{c:>12}{d:>12}\n"));
+                    out.push_str(&format!("  {what:44}{unit:10}{c:>12}{d:>12}\n"));
                 }
                 for warning in &a.warnings {
                     out.push_str(&format!("  warning: {warning}\n"));

@@ -35,14 +35,20 @@ pub(super) struct Curves {
     pub(super) ms: Option<f64>,
 }
 
-pub(super) fn curves(index: usize, a: &Analysis) -> Curves {
-    let ts = a.sampled.ts();
-    let nyquist = PI / ts;
+/// The lowest frequency that is drawn of a loop \[rad/s\].
+pub(super) fn lowest(a: &Analysis) -> f64 {
+    let nyquist = PI / a.sampled.ts();
     let crossover = match (&a.discrete.margins, &a.continuous.margins) {
         (Ok(m), _) | (Err(_), Ok(m)) => m.omega_pm.unwrap_or(m.omega_ms).min(m.omega_ms),
         _ => 0.1 * nyquist,
     };
-    let low = (crossover * 0.01).min(0.1 * nyquist);
+    (crossover * 0.01).min(0.1 * nyquist)
+}
+
+/// The curves from `low` \[rad/s\] to the Nyquist frequency.
+pub(super) fn curves(index: usize, a: &Analysis, low: f64) -> Curves {
+    let ts = a.sampled.ts();
+    let nyquist = PI / ts;
     let ratio = nyquist / low;
     let mut places: Vec<f64> =
         (0..=POINTS).map(|k| low * libm::pow(ratio, f64::from(k) / f64::from(POINTS))).collect();

@@ -9,7 +9,7 @@ use super::words;
 use crate::analysis::Analysis;
 use crate::output::Analysed;
 use crate::output::analysis::rows;
-use curves::{Curves, curves};
+use curves::{Curves, curves, lowest};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use picture::{legend, picture};
 
@@ -66,7 +66,8 @@ fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup {
         .enumerate()
         .filter_map(|(i, result)| Some((i, result.as_ref().ok()?)))
         .collect();
-    let curves: Vec<Curves> = good.iter().map(|(i, a)| curves(*i, a)).collect();
+    let low = good.iter().map(|(_, a)| lowest(a)).fold(f64::INFINITY, f64::min);
+    let curves: Vec<Curves> = good.iter().map(|(i, a)| curves(*i, a, low)).collect();
     let units = [&one.scenario.units.u, &one.scenario.units.y].map(|unit| words::unit(unit));
     html! {
         section class="run" {

@@ -96,7 +96,11 @@ pub(super) fn noise(curves: &[Curves], [u, y]: &[String; 2]) -> Panel {
 fn marks(curves: &[Curves], name: &str, which: usize) -> Vec<Mark> {
     let peak = |c: &Curves| {
         let at = *c.peaks.as_ref()?.get(which)?;
-        Some(Mark { index: c.index, at, text: format!("{name} = {}", format_number(at.1)) })
+        Some(Mark {
+            index: c.index,
+            at,
+            text: format!("{}: {name} = {} at {} rad/s", c.name, format_number(at.1), format_number(at.0)),
+        })
     };
     curves.iter().filter_map(peak).collect()
 }
@@ -181,13 +185,11 @@ pub(super) fn picture(id: &str, panel: &Panel) -> Markup {
                     viewBox={ "0 0 " (COLUMNS) " " (HEIGHT) } preserveAspectRatio="none" {
                     @for line in &panel.lines { path class=(line.class) d=(path(panel, line)) {} }
                 }
-                @for (k, mark) in panel.marks.iter().enumerate() {
-                    @let share = panel.omega.share(mark.at.0);
-                    @if inside(share) && inside(panel.values.share(mark.at.1)) {
-                        svg class="p" x=(percent(share)) y=(pixel(y(mark.at.1))) {
-                            circle class={ "point " (controller(mark.index)) } r="4" {}
-                            text class={ "title plain" @if share > 0.7 { " n" } }
-                                x=(if share > 0.7 { "-8" } else { "8" }) y=(pixel(-6.0 + 14.0 * k as f64)) { (mark.text) }
+                @for mark in &panel.marks {
+                    @let (x, height) = (panel.omega.share(mark.at.0), panel.values.share(mark.at.1));
+                    @if inside(x) && inside(height) {
+                        svg class="p" x=(percent(x)) y=(pixel(y(mark.at.1))) {
+                            circle class={ "point " (controller(mark.index)) } r="4" { title { (mark.text) } }
                         }
                     }
                 }
@@ -201,7 +203,12 @@ pub(super) fn picture(id: &str, panel: &Panel) -> Markup {
                 line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
                 text class="title t" x="50%" y=(pixel(bottom + 33.0)) { "frequency" (panel.omega.unit("rad/s")) }
             }
-            @if !panel.caption.is_empty() { figcaption { (panel.caption) } }
+            @if !panel.caption.is_empty() || !panel.marks.is_empty() {
+                figcaption {
+                    (panel.caption)
+                    @for mark in &panel.marks { " " (mark.text) "." }
+                }
+            }
         }
     }
 }
