@@ -41,16 +41,16 @@ pub(super) struct AnalyzeArguments {
     #[arg(long, value_name = "G", requires = "plant", allow_negative_numbers = true, help_heading = LOOP)]
     kd: Option<f64>,
     /// Time constant of the filter in seconds
-    #[arg(long, value_name = "S", requires = "plant", help_heading = LOOP)]
+    #[arg(long, value_name = "S", requires = "plant", allow_negative_numbers = true, help_heading = LOOP)]
     tf: Option<f64>,
     /// Sampling period in seconds
-    #[arg(long, value_name = "S", requires = "plant", help_heading = LOOP)]
+    #[arg(long, value_name = "S", requires = "plant", allow_negative_numbers = true, help_heading = LOOP)]
     ts: Option<f64>,
     /// Time from reading y to acting u in seconds
-    #[arg(long, value_name = "S", requires = "plant", help_heading = LOOP)]
+    #[arg(long, value_name = "S", requires = "plant", allow_negative_numbers = true, help_heading = LOOP)]
     latency: Option<f64>,
     /// A disturbance observer with the plant as its model and this filter time constant in seconds
-    #[arg(long, value_name = "S", requires = "plant", help_heading = LOOP)]
+    #[arg(long, value_name = "S", requires = "plant", allow_negative_numbers = true, help_heading = LOOP)]
     alpha: Option<f64>,
     /// Change a value of the file, for example `latency=0.05`; may be given more than once
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
