@@ -12,7 +12,7 @@ use crate::output::{
 use crate::report;
 use clap::{Args, ValueHint};
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `analyze`.
 #[derive(Debug, Args)]
@@ -177,7 +177,7 @@ fn check(analysed: &[Analysed<'_>]) -> Result<(), Failure> {
     Err(failure)
 }
 
-fn target(path: &PathBuf, force: bool, inputs: &Inputs) -> Result<FileTarget, Problem> {
+fn target(path: &Path, force: bool, inputs: &Inputs) -> Result<FileTarget, Problem> {
     let name = path.display();
     if path.as_os_str() == "-" {
         let message = "`--report -` is not possible: the standard output has the table";

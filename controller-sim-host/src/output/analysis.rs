@@ -4,6 +4,7 @@ use super::json::{Place, Written, places, text};
 use super::table::format_number;
 use crate::analysis::{Analysis, Noise, Side};
 use crate::scenario::{Fault, Scenario};
+use controller_design::margins::Margins;
 use serde::Serialize;
 
 /// The analysis of one case of a scenario.
@@ -152,10 +153,13 @@ fn object<'a>(one: &'a Analysed<'_>, files: &'a [Written]) -> Object<'a> {
 /// A line of the table: what, its unit, and the numbers of both sides.
 pub(crate) type Row = (&'static str, &'static str, String, String);
 
+/// A margin: what, its unit, and how to read it.
+type Margin = (&'static str, &'static str, fn(&Margins) -> f64);
+
 /// The numbers of one controller, continuous and sampled side by side.
 pub(crate) fn rows(a: &Analysis) -> Vec<Row> {
     let ts = a.sampled.ts();
-    let margins: [(&str, &str, fn(&controller_design::margins::Margins) -> f64); 6] = [
+    let margins: [Margin; 6] = [
         ("Ms, largest sensitivity", "", |m| m.ms),
         ("Mt, largest complementary sensitivity", "", |m| m.mt),
         ("gain margin", "", |m| m.gm),
@@ -163,7 +167,7 @@ pub(crate) fn rows(a: &Analysis) -> Vec<Row> {
         ("phase margin", "deg", |m| m.pm_deg),
         ("delay margin", "s", |m| m.delay_margin),
     ];
-    let of = |side: &Side, value: &dyn Fn(&controller_design::margins::Margins) -> f64| {
+    let of = |side: &Side, value: &dyn Fn(&Margins) -> f64| {
         side.margins.as_ref().map_or_else(|_| "-".to_owned(), |m| shown(value(m)))
     };
     let mut rows: Vec<Row> = margins
@@ -173,7 +177,7 @@ pub(crate) fn rows(a: &Analysis) -> Vec<Row> {
             *what != "gain margin downwards" || [c, d].iter().any(|x| !matches!(&***x, "0" | "-"))
         })
         .collect();
-    let samples = |m: &controller_design::margins::Margins| m.delay_margin / ts;
+    let samples = |m: &Margins| m.delay_margin / ts;
     rows.push(("", "samples", of(&a.continuous, &samples), of(&a.discrete, &samples)));
     let (c, d) = (&a.continuous.noise, &a.discrete.noise);
     let mut noise = |what, c: f64, d: f64| rows.push((what, "u/y", shown(c), shown(d)));
