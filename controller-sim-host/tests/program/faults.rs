@@ -102,7 +102,7 @@ fn wrong_arguments_have_a_help() {
         (&["my file"], "controller-sim run 'my file'"),
         (&["design"], "the command `design` is not in this version"),
         (&["reproduce", "--json"], "the command `reproduce` is not in this version"),
-        (&["analyze", "s.toml"], "not in this version"),
+        (&["assess", "s.toml"], "not in this version"),
         (&["run", "s.toml", "--force"], "--csv <FILE>"),
     ] {
         let output = folder.run(arguments);

@@ -2,8 +2,8 @@
 
 use crate::folder::{Folder, json, text};
 
-const COMMANDS: [&str; 6] = ["assess", "run", "demo", "completions", "man", "schema"];
-const COMMANDS: [&str; 6] = ["run", "demo", "identify", "completions", "man", "schema"];
+const COMMANDS: [&str; 10] =
+    ["run", "demo", "design", "tune", "identify", "analyze", "assess", "completions", "man", "schema"];
 
 #[test]
 fn every_command_has_a_help_with_examples() {
@@ -46,16 +46,21 @@ fn a_manual_page_for_each_command() {
     expected.push("controller-sim.1".to_owned());
     expected.sort();
     assert_eq!(folder.names(), expected);
-    assert_eq!((shown.lines().count(), folder.read("controller-sim.1")), (7, main));
+    assert_eq!((shown.lines().count(), folder.read("controller-sim.1")), (COMMANDS.len() + 1, main));
     let run = folder.read("controller-sim-run.1");
     assert!(run.contains(".TH controller-sim-run 1") && run.contains("\\-\\-parquet"), "{run}");
 
     folder.write("controller-sim-run.1", "mine");
     let shown = folder.refused(&["man", "--dir", "."]);
-    assert_eq!(shown.matches("exists and is not overwritten").count(), 7, "{shown}");
+    assert_eq!(shown.matches("exists and is not overwritten").count(), COMMANDS.len() + 1, "{shown}");
     assert_eq!(folder.read("controller-sim-run.1"), "mine");
     let output = folder.run(&["man", "--dir", ".", "--force", "--json"]);
-    assert_eq!(json(&output)["written"].as_array().map(Vec::len), Some(7), "{}", text(&output.stderr));
+    assert_eq!(
+        json(&output)["written"].as_array().map(Vec::len),
+        Some(COMMANDS.len() + 1),
+        "{}",
+        text(&output.stderr)
+    );
     assert_eq!(folder.read("controller-sim-run.1"), run);
     assert!(folder.refused(&["man", "--dir", "none"]).contains("mkdir -p none"));
 }
