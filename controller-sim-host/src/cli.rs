@@ -17,6 +17,8 @@ mod quoting;
 mod record;
 mod run;
 mod scenarios;
+mod step_log;
+mod tune;
 mod usage;
 mod wish;
 
@@ -93,6 +95,7 @@ pub fn main() -> ExitCode {
         Some(Command::Demo(arguments)) => gallery::run(&arguments, json, &command),
         Some(Command::Analyze(arguments)) => analyze::run(&arguments, json, &command),
         Some(Command::Run(arguments)) => run::run(&arguments, json, &command),
+        Some(Command::Tune(arguments)) => tune::run(&arguments, json, &command),
         Some(Command::Design(arguments)) => design::run(&arguments, json, &command),
         Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),
         Some(Command::Identify(arguments)) => identify::run(&arguments, json, &command),

@@ -30,6 +30,8 @@ pub fn of(made: &Design, limits: Option<(f64, f64)>, command: &str) -> DesignFil
         setpoint_step: 1.0,
         load_step: 1.0,
         window: window(made),
+        noise: 0.0,
+        resolution: 0.0,
         controller,
     }
 }

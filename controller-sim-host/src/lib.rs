@@ -7,7 +7,7 @@
 //! * [`plant`]: plants that move exactly between the samples.
 //! * [`output`]: tables, JSON, CSV, messages with carets.
 //! * [`report`]: pages and pictures.
-//! * [`advise`], [`design_file`]: what the tuning rules make of a plant.
+//! * [`advise`], [`design_file`], [`tuning`]: what the tuning rules make of a plant or a record.
 //! * [`cli`]: the program `controller-sim`.
 //!
 //! ```
@@ -34,3 +34,4 @@ pub mod plant;
 pub mod report;
 pub mod scenario;
 pub mod simulate;
+pub mod tuning;

@@ -86,6 +86,12 @@ impl Method {
         }
     }
 
+    /// Whether it puts a disturbance estimator or observer beside the PID.
+    #[must_use]
+    pub const fn has_block(self) -> bool {
+        matches!(self, Self::DeMomi | Self::Dob)
+    }
+
     /// Where the rule was published.
     #[must_use]
     pub const fn source(self) -> &'static str {

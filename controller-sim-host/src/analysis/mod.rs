@@ -69,14 +69,18 @@ pub fn analyse(scenario: &Scenario, index: usize) -> Result<Analysis, Reason> {
         return Err("a cascade is not analysed: analyse its inner loop as a scenario of its own".to_owned());
     }
     let (ts, latency, pid) = (scenario.ts, scenario.latency, &spec.config.pid);
-    let law = match spec.compensator_config(latency) {
-        None => DiscreteLaw::new(pid, ts),
-        Some(config) => DiscreteLaw::with_compensator(pid, &config, ts),
+    let law = match (&spec.adrc, spec.compensator_config(latency)) {
+        (Some(adrc), _) => DiscreteLaw::adrc(adrc, ts),
+        (None, Some(config)) => DiscreteLaw::with_compensator(pid, &config, ts),
+        (None, None) => DiscreteLaw::new(pid, ts),
     };
     let law = law.map_err(|faults| faults.to_string())?;
     let refused = |refusal: Refusal| refusal.to_string();
     let sampled = DiscreteLoop::new(&scenario.plant, law, latency).map_err(refused)?;
-    let design = ContinuousLoop::new(&scenario.plant, pid);
+    let design = match &spec.adrc {
+        Some(adrc) => ContinuousLoop::of_adrc(&scenario.plant, adrc).map_err(refused)?,
+        None => ContinuousLoop::new(&scenario.plant, pid),
+    };
     let design = match &spec.compensator {
         CompensatorSpec::None => design,
         CompensatorSpec::Estimator(config) => design.with_estimator(config).map_err(refused)?,

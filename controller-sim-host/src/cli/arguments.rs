@@ -1,8 +1,8 @@
 //! The arguments of the program.
 
 use super::examples;
-use super::wish::Wish;
 use super::identify::IdentifyArguments;
+use super::wish::Wish;
 use crate::simulate::Precision;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use controller_design::design::Method;
@@ -23,16 +23,18 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Runs scenarios and compares their controllers
     Run(RunArguments),
-    /// Gives margins, sensitivity and noise of loops: of the continuous design and of the law that runs
-    Analyze(super::analyze::AnalyzeArguments),
     /// Runs a built-in scenario, lists them, or writes one to a file
     Demo(DemoArguments),
     /// Designs a controller for a plant
     Design(DesignArguments),
-    /// Judges from a recorded experiment whether a PI loop is tuned for loads
-    Assess(super::assess::AssessArguments),
+    /// Tunes a loop from a recorded change between two steady states
+    Tune(super::tune::TuneArguments),
     /// Finds areas and a model of the process in a recorded change between two steady states
     Identify(IdentifyArguments),
+    /// Gives margins, sensitivity and noise of loops: of the continuous design and of the law that runs
+    Analyze(super::analyze::AnalyzeArguments),
+    /// Judges from a recorded experiment whether a PI loop is tuned for loads
+    Assess(super::assess::AssessArguments),
     /// Prints the completions for a shell
     Completions(CompletionsArguments),
     /// Prints the manual page

@@ -75,6 +75,15 @@ Examples:
 
 The log shows a change of the input (a step, a ramp, a closed loop that moves) from one steady state to another.";
 
+pub(super) const TUNE: &str = "\
+Examples:
+  controller-sim tune step.csv --report loop.html --save loop.toml --limits 0:100
+  controller-sim tune step.csv --input heater --output temperature --method momi --kpidn 3
+  controller-sim run loop.toml --precision f32       the loop as the target computes it
+
+The noise gain is 4/|K| or what is attainable; Ms is kept at 2 or below by the filter of the estimator.
+Exit code 3: the log or the rule gives no loop; the message says why and what helps.";
+
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   controller-sim completions bash > ~/.local/share/bash-completion/completions/controller-sim

@@ -142,7 +142,7 @@ pub fn identify_table(finding: &Identification<'_>) -> String {
 }
 
 #[derive(Serialize)]
-struct Object<'a> {
+pub(super) struct Object<'a> {
     version: &'static str,
     log: &'a str,
     rows: usize,
@@ -213,53 +213,59 @@ struct State {
 /// `identify` and no place.
 #[must_use]
 pub fn identify_json(finding: &Identification<'_>, files: &[Written]) -> String {
-    let found = finding.found;
-    let model = |m: controller_design::identification::SecondOrder| Model {
-        gain: m.gain,
-        a1: m.a1,
-        a2: m.a2,
-        dead_time: m.dead_time,
-    };
-    let title = |index: usize| finding.log.titles.get(index).map_or("", String::as_str);
-    let of_log = places(finding.source.name, finding.source.text, &finding.log.remarks);
-    let own = found.warnings.iter().map(|warning| Place::nowhere("identify", warning.to_string(), None));
-    text(&Object {
-        version: env!("CARGO_PKG_VERSION"),
-        log: finding.source.name,
-        rows: finding.recording.t.len(),
-        columns: [title(0), title(1), title(2)],
-        areas: found.areas.values(),
-        model: found.model.map(model),
-        plant: finding.expression(),
-        uncertainty: Uncertainty {
-            areas: found.area_interval,
-            raw_areas: found.raw_area_interval,
-            model: found.model_interval.map(model),
-            kp: found.kp_interval,
-            kp_spread: found.kp_spread,
-            raw_kp_spread: found.raw_kp_spread,
-        },
-        fit_rms: found.fit_rms,
-        chosen: found.chosen.name(),
-        kp: found.kp,
-        tf: found.tf,
-        raw_areas: found.raw_areas.values(),
-        fit: found.fit.map(|fit| Fit {
-            order: fit.order,
-            gain: fit.gain,
-            b1: fit.b1,
-            a: fit.a,
-            dead_time: fit.dead_time,
-            rms: fit.rms,
-            areas: fit.areas.values(),
-        }),
-        noise: Noise { sigma: found.sigma, quantisation: found.quantisation },
-        before: State { u: found.u0, y: found.y0 },
-        after: State { u: found.u_inf, y: found.y_inf },
-        change_at: found.change_at,
-        settled_at: found.settled_at,
-        tail_from: found.tail_from,
-        files,
-        warnings: of_log.chain(own).collect(),
-    })
+    text(&Object::new(finding, files))
+}
+
+impl<'a> Object<'a> {
+    pub(super) fn new(finding: &Identification<'a>, files: &'a [Written]) -> Self {
+        let found = finding.found;
+        let model = |m: controller_design::identification::SecondOrder| Model {
+            gain: m.gain,
+            a1: m.a1,
+            a2: m.a2,
+            dead_time: m.dead_time,
+        };
+        let title = |index: usize| finding.log.titles.get(index).map_or("", String::as_str);
+        let of_log = places(finding.source.name, finding.source.text, &finding.log.remarks);
+        let own = found.warnings.iter().map(|warning| Place::nowhere("identify", warning.to_string(), None));
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            log: finding.source.name,
+            rows: finding.recording.t.len(),
+            columns: [title(0), title(1), title(2)],
+            areas: found.areas.values(),
+            model: found.model.map(model),
+            plant: finding.expression(),
+            uncertainty: Uncertainty {
+                areas: found.area_interval,
+                raw_areas: found.raw_area_interval,
+                model: found.model_interval.map(model),
+                kp: found.kp_interval,
+                kp_spread: found.kp_spread,
+                raw_kp_spread: found.raw_kp_spread,
+            },
+            fit_rms: found.fit_rms,
+            chosen: found.chosen.name(),
+            kp: found.kp,
+            tf: found.tf,
+            raw_areas: found.raw_areas.values(),
+            fit: found.fit.map(|fit| Fit {
+                order: fit.order,
+                gain: fit.gain,
+                b1: fit.b1,
+                a: fit.a,
+                dead_time: fit.dead_time,
+                rms: fit.rms,
+                areas: fit.areas.values(),
+            }),
+            noise: Noise { sigma: found.sigma, quantisation: found.quantisation },
+            before: State { u: found.u0, y: found.y0 },
+            after: State { u: found.u_inf, y: found.y_inf },
+            change_at: found.change_at,
+            settled_at: found.settled_at,
+            tail_from: found.tail_from,
+            files,
+            warnings: of_log.chain(own).collect(),
+        }
+    }
 }

@@ -4,8 +4,8 @@
 #![doc = include_str!("json.md")]
 
 mod advice;
-mod assessment;
 pub(crate) mod analysis;
+mod assessment;
 mod csv;
 mod design;
 mod design_json;
@@ -17,11 +17,12 @@ mod json;
 mod parquet;
 mod samples;
 pub(crate) mod table;
+mod tuning;
 
 pub use self::parquet::ParquetWriter;
 pub use advice::{advice_json, advice_table};
-pub use assessment::{assessment_json, assessment_table};
 pub use analysis::{Analysed, analysis_json, analysis_table};
+pub use assessment::{assessment_json, assessment_table};
 pub use csv::CsvWriter;
 pub use design::design_table;
 pub use design_json::design_json;
@@ -32,6 +33,7 @@ pub use identification::{Identification, identify_json, identify_table};
 pub use json::{SCHEMA, Written, error_json, list_json, run_json, saved_json, text_json, written_json};
 pub use samples::{Columns, SampleFiles};
 pub use table::run_table;
+pub use tuning::{Tuning, tune_json, tune_table};
 
 use crate::report::Chapter;
 use crate::scenario::{Fault, SourceText};

@@ -33,11 +33,16 @@ struct Panel<'a> {
 }
 
 pub(super) fn page(finding: &Identification<'_>, command: &str) -> String {
-    let found = finding.found;
     let name = finding.source.name;
+    let content = html! { main { (sections(finding)) } };
+    document("Identification of a process", &format!("Process of {name}"), &content, command)
+}
+
+/// Record, areas and model.
+pub(super) fn sections(finding: &Identification<'_>) -> Markup {
+    let found = finding.found;
     let simulated = found.simulate(&finding.recording);
-    let content = html! {
-        main {
+    html! {
             p {
                 (finding.recording.t.len()) " rows; at " (format_number(found.change_at)) " s the input "
                 (finding.column(1, "u")) " goes from " (format_number(found.u0)) " to " (format_number(found.u_inf))
@@ -58,9 +63,7 @@ pub(super) fn page(finding: &Identification<'_>, command: &str) -> String {
                 h2 id="model" { "Model" }
                 (model(finding))
             }
-        }
-    };
-    document("Identification of a process", &format!("Process of {name}"), &content, command)
+    }
 }
 
 fn notes(finding: &Identification<'_>) -> Markup {

@@ -4,8 +4,8 @@
 //! that happened between two columns is lost. A page is for reading: it says what was run, shows the curves, lists the
 //! metrics and the parameters, and has the text of the scenario in it to repeat the run.
 
-mod assessment;
 mod analysis;
+mod assessment;
 mod bands;
 mod chapter;
 mod describe;
@@ -22,6 +22,7 @@ mod path;
 mod scale;
 mod standalone;
 mod tables;
+mod tuning;
 mod words;
 
 pub use assessment::{Experiment, Line, advice, assessment_page, lines, verdict_line};
@@ -86,4 +87,15 @@ pub fn figure(chapter: &Chapter<'_>) -> String {
 #[must_use]
 pub fn identification(finding: &Identification<'_>, command: &str) -> String {
     identification::page(finding, command)
+}
+
+/// The page of a tuned loop: the record with its model, the simulated loop, margins and noise. `command` is what made it.
+#[must_use]
+pub fn tuning(
+    tuning: &crate::output::Tuning<'_>,
+    chapter: &Chapter<'_>,
+    analysed: &crate::output::Analysed<'_>,
+    command: &str,
+) -> String {
+    tuning::page(tuning, chapter, analysed, command)
 }

@@ -32,6 +32,10 @@ pub struct DesignFile {
     pub load_step: f64,
     /// Time for each of the two \[s\].
     pub window: f64,
+    /// Standard deviation of the measurement's noise \[y\]; 0: none.
+    pub noise: f64,
+    /// Smallest step of the measurement \[y\]; 0: none.
+    pub resolution: f64,
     /// The controller.
     pub controller: ControllerSpec,
 }
@@ -57,6 +61,12 @@ impl DesignFile {
         if self.initial_setpoint != 0.0 || self.initial_load != 0.0 {
             push(&mut text, format_args!("\n[initial]\nsetpoint = {}", number(self.initial_setpoint)));
             push(&mut text, format_args!("disturbance = {}", number(self.initial_load)));
+        }
+        if self.noise > 0.0 {
+            push(&mut text, format_args!("\n[noise]\nstd = {}", number(self.noise)));
+        }
+        if self.resolution > 0.0 {
+            push(&mut text, format_args!("\n[sensor]\nresolution = {}", number(self.resolution)));
         }
         let setpoint = number(self.initial_setpoint + self.setpoint_step);
         push(&mut text, format_args!("\n[[event]]\nat = 0.0\nsetpoint = {setpoint}"));

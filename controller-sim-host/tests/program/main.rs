@@ -1,7 +1,7 @@
 //! The program as it is called: exit codes, streams, JSON, files.
 
-mod assess;
 mod analyze;
+mod assess;
 mod faults;
 mod features;
 mod files;

@@ -58,7 +58,7 @@ fn title(one: &Analysed<'_>) -> String {
     one.case.map_or_else(|| title.to_owned(), |case| format!("{title}: {case}"))
 }
 
-fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup {
+pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup {
     let id = format!("loop-{}", index + 1);
     let good: Vec<(usize, &Analysis)> = one
         .controllers

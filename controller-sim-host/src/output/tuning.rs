@@ -1,0 +1,127 @@
+//! A tuned loop: text for people, JSON for programs.
+
+use super::design::{design_table, parameters};
+use super::design_json::Designed;
+use super::identification::{Identification, Object as Identified, identify_table};
+use super::json::text;
+use super::table::format_number;
+use crate::simulate::Metrics;
+use controller_design::design::Design;
+use serde::Serialize;
+
+/// What came of a record.
+#[derive(Debug, Clone, Copy)]
+pub struct Tuning<'a> {
+    /// The process.
+    pub finding: Identification<'a>,
+    /// The controller.
+    pub made: &'a Design,
+    /// Of the two together.
+    pub warnings: &'a [String],
+    /// The simulated set-point step and load step.
+    pub events: [Metrics; 2],
+    /// Largest distance of the model's response from the record \[y\].
+    pub worst_residual: f64,
+}
+
+impl Tuning<'_> {
+    /// Everything that a person should know.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        self.made.warnings.iter().map(ToString::to_string).chain(self.warnings.iter().cloned()).collect()
+    }
+
+    /// What goes into a commissioning file: names and values with units.
+    pub(crate) fn rows(&self) -> Vec<(String, String)> {
+        let made = self.made;
+        let mut rows = vec![
+            ("method".to_owned(), format!("{}, {}", made.method.title(), made.method.source())),
+            ("model".to_owned(), made.plant.to_string()),
+            ("largest residual of the model".to_owned(), format!("{} y", format_number(self.worst_residual))),
+            ("sampling period".to_owned(), format!("{} s", made.ts)),
+        ];
+        rows.extend(parameters(&made.law).into_iter().map(|(name, value)| (name.to_owned(), value)));
+        let margins = &made.sampled.margins;
+        for (name, value) in [
+            ("Ms, sampled", margins.ms),
+            ("gain margin", margins.gm),
+            ("phase margin [deg]", margins.pm_deg),
+            ("delay margin [s]", margins.delay_margin),
+            ("std(u)/std(n)", made.sampled.noise.white),
+            ("IAE of the set-point step [y s]", self.events[0].iae),
+            ("IAE of the load step [y s]", self.events[1].iae),
+            ("largest error of the load step [y]", self.events[1].e_max),
+        ] {
+            rows.push((name.to_owned(), format_number(value)));
+        }
+        rows
+    }
+}
+
+/// The process and its controller as text.
+#[must_use]
+pub fn tune_table(tuning: &Tuning<'_>) -> String {
+    let mut out = identify_table(&tuning.finding);
+    out.push_str(&format!(
+        "largest distance of the model from the record: {}\n\n",
+        format_number(tuning.worst_residual)
+    ));
+    out.push_str(&design_table(tuning.made));
+    let [setpoint, load] = &tuning.events;
+    out.push_str(&format!(
+        "\nsimulated with noise and resolution of the record\n  {:<30}IAE {:>10}  e_max {:>10}\n  {:<30}IAE {:>10}  e_max {:>10}\n",
+        "set-point step as recorded",
+        format_number(setpoint.iae),
+        format_number(setpoint.e_max),
+        "load, a fifth of the input's",
+        format_number(load.iae),
+        format_number(load.e_max)
+    ));
+    if !tuning.warnings.is_empty() {
+        out.push_str("\nwarnings:\n");
+        for warning in tuning.warnings {
+            out.push_str(&format!("  {warning}\n"));
+        }
+    }
+    out
+}
+
+#[derive(Serialize)]
+struct Object<'a> {
+    identified: Identified<'a>,
+    design: Designed<'a>,
+    worst_residual: f64,
+    setpoint_step: Loop,
+    load_step: Loop,
+    warnings: &'a [String],
+    saved: Option<&'a str>,
+    report: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct Loop {
+    ie: f64,
+    iae: f64,
+    e_max: f64,
+    tv: f64,
+}
+
+impl From<&Metrics> for Loop {
+    fn from(m: &Metrics) -> Self {
+        Self { ie: m.ie, iae: m.iae, e_max: m.e_max, tv: m.tv }
+    }
+}
+
+/// The process and its controller as JSON: see `schema.json`.
+#[must_use]
+pub fn tune_json(tuning: &Tuning<'_>, saved: Option<&str>, report: Option<&str>) -> String {
+    text(&Object {
+        identified: Identified::new(&tuning.finding, &[]),
+        design: Designed::new(tuning.made, saved),
+        worst_residual: tuning.worst_residual,
+        setpoint_step: (&tuning.events[0]).into(),
+        load_step: (&tuning.events[1]).into(),
+        warnings: tuning.warnings,
+        saved,
+        report,
+    })
+}

@@ -1,0 +1,61 @@
+//! The page of a tuned loop: from the record to the loop that is put into service.
+
+use super::page::document;
+use super::{Chapter, analysis, chapter, identification};
+use crate::output::{Analysed, Tuning};
+use maud::{Markup, html};
+
+/// The page as text.
+pub(super) fn page(
+    tuning: &Tuning<'_>,
+    chapter: &Chapter<'_>,
+    analysed: &Analysed<'_>,
+    command: &str,
+) -> String {
+    let heading = format!("{} for the process of {}", tuning.made.method.title(), tuning.finding.source.name);
+    let content = html! {
+        main {
+            (summary(tuning))
+            section aria-labelledby="process" {
+                h2 id="process" { "The process" }
+                (identification::sections(&tuning.finding))
+            }
+            section aria-labelledby="loop" {
+                h2 id="loop" { "The loop" }
+                p {
+                    "Simulated with the law that is flashed: the set-point changes as the record did, then a load of a "
+                    "fifth of the recorded change of the input acts at the plant's input."
+                }
+                (chapter::show(0, std::slice::from_ref(chapter)))
+            }
+            section aria-labelledby="margins" {
+                h2 id="margins" { "Robustness and noise" }
+                (analysis::chapter(0, analysed, false))
+            }
+        }
+    };
+    document("Tuning of a control loop", &heading, &content, command)
+}
+
+/// What was chosen, what it promises, and what to know.
+fn summary(tuning: &Tuning<'_>) -> Markup {
+    let rows = tuning.rows();
+    let notes = tuning.notes();
+    html! {
+        @if !notes.is_empty() {
+            div class="notes" role="note" { ul { @for note in &notes { li { (note) } } } }
+        }
+        section aria-labelledby="summary" {
+            h2 id="summary" { "For the commissioning file" }
+            div class="scroll" role="region" tabindex="0" aria-labelledby="summary" {
+                table {
+                    tbody {
+                        @for (name, value) in &rows {
+                            tr { th scope="row" class="text" { (name) } td { (value) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

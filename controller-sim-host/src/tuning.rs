@@ -1,0 +1,144 @@
+//! From a recorded step to a tuned loop.
+
+use crate::design_file;
+use crate::scenario::{DesignFile, Units};
+use controller_design::Refusal;
+use controller_design::design::{Design, Law, Request, design_with_areas};
+use controller_design::identification::{
+    Chosen, Fit, Identified, IdentifyOptions, Recording, SecondOrder, identify,
+};
+use controller_design::model::{Polynomial, TransferFunction};
+
+/// Share of the output's range that noise may move it by without a warning.
+const QUIET: f64 = 0.05;
+/// Share of the recorded change of the input that the load of the design file steps by.
+const LOAD: f64 = 0.2;
+
+/// What a person knows besides the record.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Known {
+    /// Range of the controller's output \[u\].
+    pub limits: Option<(f64, f64)>,
+    /// What the signals are measured in.
+    pub units: Units,
+    /// What was typed.
+    pub command: String,
+}
+
+/// A process that was identified, and a controller for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tuned {
+    /// The process.
+    pub found: Identified,
+    /// The controller.
+    pub made: Design,
+    /// The file that is run, analysed, exported and flashed: around the operating point of the record.
+    pub file: DesignFile,
+    /// What a person should know of the two together.
+    pub warnings: Vec<String>,
+}
+
+/// Identifies the process of `recording` and designs a controller by `request`.
+///
+/// The filter of the controller decides how sure its gains are: the process is identified a second time for the filter
+/// that the first design has.
+///
+/// # Errors
+/// What the identification or the rule refuses.
+pub fn tune(recording: &Recording<'_>, request: &Request, known: &Known) -> Result<Tuned, Refusal> {
+    let first = identify(recording, &IdentifyOptions::default())?;
+    let (found, made) = match designed(&first, request) {
+        Ok(made) => {
+            let tf = match &made.law {
+                Law::Pid { pid, .. } if made.areas.is_some() && pid.tf > 0.0 => Some(pid.tf),
+                _ => None,
+            };
+            let again = tf.and_then(|tf| {
+                let found =
+                    identify(recording, &IdentifyOptions { tf: Some(tf), ..IdentifyOptions::default() })
+                        .ok()?;
+                let made = designed(&found, request).ok()?;
+                Some((found, made))
+            });
+            again.unwrap_or((first, made))
+        }
+        Err(refusal) => return Err(refusal),
+    };
+    let warnings = warnings(recording, &found, &made, known);
+    let file = file(&found, &made, known);
+    Ok(Tuned { found, made, file, warnings })
+}
+
+fn designed(found: &Identified, request: &Request) -> Result<Design, Refusal> {
+    let plant = plant(found)?;
+    let measured = (found.chosen == Chosen::Areas).then_some(&found.areas);
+    design_with_areas(&plant, measured, request)
+}
+
+/// The model in whose place the controller works: the fit that was chosen, else the model of second order.
+fn plant(found: &Identified) -> Result<TransferFunction, Refusal> {
+    const NONE: Refusal = Refusal::Data {
+        why: "no model describes the record",
+        help: "record a larger step, and until the output is at rest",
+    };
+    let model = match (found.chosen, found.fit, found.model) {
+        (Chosen::Fit, Some(Fit { gain, b1, a: [a1, a2, a3, a4], dead_time, .. }), _) => {
+            let num = Polynomial::new([gain, gain * b1]);
+            TransferFunction::from_polynomials(&num, &Polynomial::new([1.0, a1, a2, a3, a4]), dead_time)
+        }
+        (_, _, Some(SecondOrder { gain, a1, a2, dead_time })) => {
+            TransferFunction::second_order(gain, a1, a2, dead_time)
+        }
+        _ => return Err(NONE),
+    };
+    model.map_err(|_| NONE)
+}
+
+/// The loop around the recorded operating point: the same change of the set-point, and a load of a fifth of the recorded
+/// change of the input, with the noise and the resolution of the record.
+fn file(found: &Identified, made: &Design, known: &Known) -> DesignFile {
+    let mut file = design_file::of(made, known.limits, &known.command);
+    file.units = known.units.clone();
+    file.initial_setpoint = found.y0;
+    file.initial_load = found.y0 / made.plant.gain() - found.u0;
+    file.setpoint_step = found.y_inf - found.y0;
+    file.load_step = LOAD * (found.u_inf - found.u0);
+    // What a converter rounds away is no noise of its own.
+    file.noise = if found.sigma > 0.5 * found.quantisation { found.sigma } else { 0.0 };
+    file.resolution = found.quantisation;
+    file
+}
+
+fn warnings(recording: &Recording<'_>, found: &Identified, made: &Design, known: &Known) -> Vec<String> {
+    let mut list = Vec::new();
+    let (lo, hi) = known.limits.unwrap_or_else(|| {
+        recording.u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), u| (lo.min(*u), hi.max(*u)))
+    });
+    let gain =
+        made.noise.kpidn.unwrap_or(0.0).max(made.noise.kden.unwrap_or(0.0)).max(made.noise.an.unwrap_or(0.0));
+    let gain = if gain > 0.0 { gain } else { made.sampled.noise.controller };
+    let of = if known.limits.is_some() { "its range" } else { "the range it was recorded in" };
+    for (what, size) in
+        [("one step of the measurement", found.quantisation), ("its noise (one sigma)", found.sigma)]
+    {
+        let share = size * gain / (hi - lo);
+        if share > QUIET && share.is_finite() {
+            list.push(format!(
+                "{what}, {}, times the noise gain {} moves the output by {:.0} % of {of}: ask for a lower noise gain (--kpidn, --kden) or filter the measurement",
+                crate::scenario::show_short(size),
+                crate::scenario::show_short(gain),
+                100.0 * share
+            ));
+        }
+    }
+    if found.kp_spread > 0.3 && made.areas.is_some() {
+        list.push(format!(
+            "kp follows from the record to {:.0} % only: record a larger step, or ask for a longer filter (a lower --kpidn)",
+            100.0 * found.kp_spread.min(9.99)
+        ));
+    }
+    if known.limits.is_none() {
+        list.push("the range of the output is not known: `--limits LO:HI` puts it into the file".to_owned());
+    }
+    list
+}
