@@ -21,6 +21,8 @@ pub struct Known {
     pub limits: Option<(f64, f64)>,
     /// What the signals are measured in.
     pub units: Units,
+    /// What the process is called.
+    pub name: String,
     /// What was typed.
     pub command: String,
 }
@@ -98,6 +100,9 @@ fn plant(found: &Identified) -> Result<TransferFunction, Refusal> {
 /// change of the input, with the noise and the resolution of the record.
 fn file(found: &Identified, made: &Design, known: &Known) -> DesignFile {
     let mut file = design_file::of(made, known.limits, &known.command);
+    file.title = format!("{} for the process of {}", made.method.title(), known.name);
+    // Half of what leaves nothing of a step: the noise covers the rest.
+    file.window = made.ts * (0.5 * file.window / made.ts).ceil();
     file.units = known.units.clone();
     file.initial_setpoint = found.y0;
     file.initial_load = found.y0 / made.plant.gain() - found.u0;

@@ -54,10 +54,22 @@ impl Job<'_> {
 
     pub(super) fn simc(&mut self) -> Result<Law, Refusal> {
         let model = half_rule(&self.delayed, Keep::Two, 0.0)?;
+        let tau_c = self.request.tau_c;
+        let dead_time = match model {
+            HalfRule::First(model) => model.dead_time,
+            HalfRule::Second(model) => model.dead_time,
+            HalfRule::Integrating(model) | HalfRule::IntegratingLag(model, _) => model.dead_time,
+        };
+        if tau_c.is_none() && dead_time == 0.0 {
+            return Err(Refusal::Plant {
+                must: "have a dead time, which is the rule's choice for the time constant tau_c of the closed loop",
+                help: "give tau_c",
+            });
+        }
         let made = match model {
             HalfRule::First(model) => {
                 self.first_order(&model);
-                Simc::pi(model.gain, model.tau, model.dead_time, None)
+                Simc::pi(model.gain, model.tau, model.dead_time, tau_c)
             }
             HalfRule::Second(model) => {
                 let (gain, dead_time) = (model.gain, model.dead_time);
@@ -65,16 +77,16 @@ impl Job<'_> {
                     Some(RuleModel { gain, integrators: 0, a1: model.a1, a2: model.a2, dead_time });
                 // The half rule keeps real lags.
                 let (slow, fast) = model.time_constants().unwrap_or((model.a1, 0.0));
-                Simc::pid(gain, slow, fast, dead_time, None)
+                Simc::pid(gain, slow, fast, dead_time, tau_c)
             }
             HalfRule::Integrating(model) => {
                 self.integrating(&model);
-                Simc::integrating_pi(model.gain, model.dead_time, None)
+                Simc::integrating_pi(model.gain, model.dead_time, tau_c)
             }
             HalfRule::IntegratingLag(model, tau) => {
                 let (gain, dead_time) = (model.gain, model.dead_time);
                 self.made.model = Some(RuleModel { gain, integrators: 1, a1: tau, a2: 0.0, dead_time });
-                Simc::integrating_pid(gain, tau, dead_time, None)
+                Simc::integrating_pid(gain, tau, dead_time, tau_c)
             }
         }?;
         made.warnings.iter().for_each(|warning| self.warn(*warning));

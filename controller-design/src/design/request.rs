@@ -27,6 +27,8 @@ pub struct Request {
     /// Maximum sensitivity the rule designs for, where it takes one (`pi-ms`, `dob`: default 1.4; `ah`: 1.4 or 2,
     /// default 1.4).
     pub ms: Option<f64>,
+    /// Time constant of the closed loop for `simc` \[s\]; `None`: the dead time of its model.
+    pub tau_c: Option<f64>,
     /// Largest maximum sensitivity that is accepted of a compensated loop: a `de-momi` first raises `tfd`, then cuts `kfd`; a
     /// `dob` raises `alpha`. `None`: whatever it is.
     pub ms_max: Option<f64>,
@@ -79,6 +81,7 @@ impl Request {
             estimator_filter: EstimatorFilter::Default,
             observer_filter: ObserverFilter::Default,
             ms: None,
+            tau_c: None,
             ms_max: None,
         }
     }

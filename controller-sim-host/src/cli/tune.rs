@@ -70,7 +70,12 @@ pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Resul
     let ts = arguments.ts.unwrap_or_else(|| usual_distance(recording.t));
     let unit = |index: usize| log.units.get(index).cloned().unwrap_or_default();
     let units = Units { y: unit(2), u: unit(1) };
-    let known = Known { limits: arguments.wish.limits, units, command: command.to_owned() };
+    let known = Known {
+        limits: arguments.wish.limits,
+        units,
+        name: file_name(&source.name),
+        command: command.to_owned(),
+    };
     let request = arguments.wish.request(method, ts, Some(MS_MAX).filter(|_| method.has_block()));
     let tuned = tune(&recording, &request, &known).map_err(|refusal| refused(method, &refusal))?;
     let finding = Identification { source: Source::from(&source), log: &log, recording, found: &tuned.found };
@@ -164,6 +169,12 @@ impl Simulated {
         };
         report::tuning(tuning, &chapter, &analysed, command)
     }
+}
+
+/// The log's name without its folders, for a title.
+fn file_name(path: &str) -> String {
+    let name = std::path::Path::new(path).file_name().map_or(path.into(), |name| name.to_string_lossy());
+    name.chars().filter(|c| !c.is_control()).take(60).collect()
 }
 
 /// The median distance of two rows with different times.

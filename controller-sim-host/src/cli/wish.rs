@@ -20,7 +20,7 @@ pub(super) struct Wish {
     /// Noise gain of the disturbance estimator [u/y] (de-momi); default: that of the PID
     #[arg(long, value_name = "G", value_parser = positive)]
     kden: Option<f64>,
-    /// Maximum sensitivity to design for (pi-ms, dob: default 1.4; ah: 1.4 or 2)
+    /// Maximum sensitivity to design for (pi-ms, dob: default 1.4; ah: 1.4 or 2; adrc: default 1.6)
     #[arg(long, value_name = "M", value_parser = sensitivity)]
     ms: Option<f64>,
     /// Largest maximum sensitivity with a disturbance block: slows its filter, then cuts its gain (de-momi, dob)
@@ -35,6 +35,9 @@ pub(super) struct Wish {
     /// Index after a unit load to choose the observer's filter for (dob): iae, ise, itae, e_max, or ramp_ie for a ramp
     #[arg(long, value_name = "INDEX=VALUE", value_parser = index)]
     want: Option<Index>,
+    /// Time constant of the closed loop \[s\] (simc); default: the dead time
+    #[arg(long, value_name = "S", value_parser = positive)]
+    tau_c: Option<f64>,
     /// From reading the measurement to acting with the output \[s\]
     #[arg(long, value_name = "S", value_parser = time, default_value_t = 0.0)]
     pub(super) latency: f64,
@@ -56,20 +59,22 @@ impl Wish {
         let filter = filter.or(self.want.map(|Index(wish)| ObserverFilter::Wanted(wish)));
         request.observer_filter = filter.unwrap_or(request.observer_filter);
         request.ms = self.ms;
+        request.tau_c = self.tau_c;
         request.ms_max = self.ms_max.or(ms_max);
         request
     }
 
     /// Options that mean nothing to `method`.
     pub(super) fn idle(&self, method: Method) -> Vec<Problem> {
-        use Method::{Ah, DeMomi, Dob, Drmo, Momi, PiMs};
+        use Method::{Ah, Amigo, DeMomi, Dob, Drmo, Momi, PiMs, Simc};
         let given = [
-            ("--tf", self.tf.is_some(), &[Momi, Drmo, DeMomi, Ah][..]),
+            ("--tf", self.tf.is_some(), &[Momi, Drmo, DeMomi, Ah, Amigo, Simc][..]),
             ("--kpidn", self.kpidn.is_some(), &[Momi, Drmo, DeMomi]),
             ("--tfd", self.tfd.is_some(), &[DeMomi]),
             ("--kden", self.kden.is_some(), &[DeMomi]),
-            ("--ms", self.ms.is_some(), &[PiMs, Dob, Ah]),
+            ("--ms", self.ms.is_some(), &[PiMs, Dob, Ah, Method::Adrc]),
             ("--ms-max", self.ms_max.is_some(), &[DeMomi, Dob]),
+            ("--tau-c", self.tau_c.is_some(), &[Simc]),
             ("--noise-ratio", self.noise_ratio.is_some(), &[Dob]),
             ("--alpha", self.alpha.is_some(), &[Dob]),
             ("--want", self.want.is_some(), &[Dob]),

@@ -83,6 +83,7 @@ pub(super) fn read(table: &Table<'_>, places: &mut Places) -> Option<Wish> {
     request.observer_filter = observer.unwrap_or(request.observer_filter);
     request.ms = number("ms", SENSITIVITY);
     request.ms_max = number("ms_max", SENSITIVITY);
+    request.tau_c = number("tau_c", TIME);
     let (span, name) = (part.place.clone(), part.whole_name());
     part.finish();
     method.map(|method| Wish { request, span: if span.is_empty() { method.span } else { span }, name })

@@ -2,6 +2,7 @@
 
 mod analyze;
 mod assess;
+mod design;
 mod faults;
 mod features;
 mod files;
@@ -16,3 +17,4 @@ mod runs;
 mod same_bytes;
 mod schema;
 mod several;
+mod tune;

@@ -1,0 +1,142 @@
+//! `tune`, on recordings of different kinds.
+
+use crate::folder::{Folder, json, text};
+use crate::schema::check;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+/// A cooling valve: opening it lowers the temperature; a log of a European recorder with decimal commas, units below the
+/// names, noise and two seconds between rows. Two lags, 40 and 15 s, 6 s of dead time, gain -0.8.
+fn valve() -> String {
+    let (gain, slow, fast, dead_time) = (-0.8, 40.0, 15.0, 6.0);
+    let mut state: u64 = 7;
+    let mut noise = || {
+        // The mean of twelve uniform numbers, near enough to a Gaussian one.
+        let sum: f64 = (0..12)
+            .map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1_u64 << 53) as f64
+            })
+            .sum();
+        0.03 * (sum - 6.0)
+    };
+    let mut text = "Zeit;Ventil;Temperatur\ns;%;degC\n".to_owned();
+    for row in 0..400 {
+        let t = 2.0 * f64::from(row);
+        let after: f64 = t - 60.0 - dead_time;
+        let step = if after > 0.0 {
+            1.0 - (slow * (-after / slow).exp() - fast * (-after / fast).exp()) / (slow - fast)
+        } else {
+            0.0
+        };
+        let (u, y) = (if t < 60.0 { 30.0 } else { 45.0 }, 72.0 + gain * 15.0 * step + noise());
+        text.push_str(&format!("{t:.1};{u:.1};{y:.3}\n").replace('.', ","));
+    }
+    text
+}
+
+#[test]
+fn a_noisy_log_of_a_cooling_valve_gives_a_robust_loop() {
+    let folder = Folder::new("tune-valve");
+    folder.write("valve.csv", &valve());
+    let arguments = [
+        "tune",
+        "valve.csv",
+        "--input",
+        "Ventil",
+        "--output",
+        "Temperatur",
+        "--time",
+        "Zeit",
+        "--limits",
+        "0:100",
+        "--save",
+        "loop.toml",
+        "--report",
+        "loop.html",
+        "--json",
+    ];
+    let tuned = json(&folder.run(&arguments));
+    check(&tuned);
+    let model = &tuned["identified"]["model"];
+    for (key, expected, tolerance) in
+        [("gain", -0.8, 0.01), ("a1", 55.0, 2.0), ("a2", 600.0, 60.0), ("dead_time", 6.0, 1.0)]
+    {
+        assert!((number(&model[key]) - expected).abs() < tolerance, "{key}: {model}");
+    }
+    // 0.03 of noise: five sigma.
+    assert!(number(&tuned["worst_residual"]) < 0.15, "{}", tuned["worst_residual"]);
+    let design = &tuned["design"];
+    assert!(number(&design["pid"]["ki"]) < 0.0, "the gain is negative: {design}");
+    assert!(
+        number(&design["sampled"]["ms"]) <= 2.0 && number(&design["robustness"]["ms"]) <= 2.0,
+        "{design}"
+    );
+    assert!(design["estimator"].is_object());
+    let page = folder.read("loop.html");
+    for part in ["For the commissioning file", "Temperatur", "Nyquist", "degC"] {
+        assert!(page.contains(part), "`{part}` is not on the page");
+    }
+    let run = json(&folder.run(&["run", "loop.toml", "--json", "--precision", "f32"]));
+    let load = &run["controllers"][0]["events"][1]["metrics"];
+    assert!((number(&load["iae"]) / number(&tuned["load_step"]["iae"]) - 1.0).abs() < 0.02, "{load}");
+    let analysed = json(&folder.run(&["analyze", "loop.toml", "--json"]));
+    let ms = number(&analysed["controllers"][0]["discrete"]["robustness"]["ms"]);
+    assert!((ms / number(&design["sampled"]["ms"]) - 1.0).abs() < 1e-9, "{ms}");
+}
+
+/// The recorded heater, where it is at hand: 10 bits, one row before the step, a doubled time stamp.
+#[test]
+fn the_recorded_heater_gives_a_loop_for_the_commissioning_file() {
+    let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/heater-step.csv");
+    let Ok(record) = fs::read_to_string(&log) else {
+        println!("not run: the recording is not at hand");
+        return;
+    };
+    let folder = Folder::new("tune-heater");
+    folder.write("heater.csv", &record);
+    let arguments =
+        ["tune", "heater.csv", "--limits", "0:100", "--save", "loop.toml", "--report", "loop.html", "--json"];
+    let tuned = json(&folder.run(&arguments));
+    check(&tuned);
+    assert!(number(&tuned["worst_residual"]) < 1.0, "{}", tuned["worst_residual"]);
+    assert!(number(&tuned["design"]["sampled"]["ms"]) <= 2.0);
+    assert!(tuned["design"]["estimator"].is_object());
+    folder.done(&["run", "loop.toml"]);
+    for method in ["momi", "drmo", "pi-ms", "dob", "amigo"] {
+        let tuned =
+            json(&folder.run(&["tune", "heater.csv", "--method", method, "--limits", "0:100", "--json"]));
+        check(&tuned);
+        assert!(number(&tuned["design"]["sampled"]["ms"]) <= 2.0, "{method}");
+    }
+}
+
+#[test]
+fn what_gives_no_loop_is_refused() {
+    let folder = Folder::new("tune-wrong");
+    let flat: String = (0..100).map(|row| format!("{row},1.0,2.0\n")).collect();
+    folder.write("flat.csv", &format!("t,u,y\n{flat}"));
+    let output = folder.run(&["tune", "flat.csv"]);
+    assert_eq!((output.status.code(), text(&output.stdout)), (Some(3), ""));
+    assert!(text(&output.stderr).contains("help: "), "{}", text(&output.stderr));
+    folder.write("valve.csv", &valve());
+    let shown = folder.refused(&["tune", "valve.csv", "--input", "Pumpe"]);
+    assert!(shown.contains("Pumpe"), "{shown}");
+    let shown = folder.refused(&["tune", "valve.csv", "--method", "advise"]);
+    assert!(shown.contains("needs one method"), "{shown}");
+    let shown = folder.refused(&["tune", "valve.csv", "--save", "valve.csv", "--force"]);
+    assert!(shown.contains("is the log itself"), "{shown}");
+    let columns = ["--input", "2", "--output", "3", "--time", "1"];
+    let quiet = json(&folder.run(
+        &[&["tune", "valve.csv", "--kpidn", "100", "--limits", "35:45", "--json"][..], &columns].concat(),
+    ));
+    let warned = quiet["warnings"].as_array().is_some_and(|all| {
+        all.iter().filter_map(Value::as_str).any(|one| one.contains("times the noise gain"))
+    });
+    assert!(warned || quiet["error"].is_object(), "{quiet}");
+}
