@@ -15,6 +15,7 @@ mod pages;
 mod progress;
 mod quoting;
 mod record;
+mod reproduce;
 mod run;
 mod scenarios;
 mod step_log;
@@ -60,6 +61,11 @@ impl Failure {
         Self { troubles: vec![problem.into()], code: EXIT_INTERNAL }
     }
 
+    /// A result that was printed, and is not as it must be.
+    fn differs() -> Self {
+        Self { troubles: Vec::new(), code: EXIT_INTERNAL }
+    }
+
     /// Somebody wanted it to end.
     fn stopped() -> Self {
         Self {
@@ -99,6 +105,7 @@ pub fn main() -> ExitCode {
         Some(Command::Design(arguments)) => design::run(&arguments, json, &command),
         Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),
         Some(Command::Identify(arguments)) => identify::run(&arguments, json, &command),
+        Some(Command::Reproduce(arguments)) => reproduce::run(&arguments, json),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),
         Some(Command::Schema) => pages::schema(),

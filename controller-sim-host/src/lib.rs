@@ -8,6 +8,8 @@
 //! * [`output`]: tables, JSON, CSV, messages with carets.
 //! * [`report`]: pages and pictures.
 //! * [`advise`], [`design_file`], [`tuning`]: what the tuning rules make of a plant or a record.
+//! * [`advise`], [`design_file`]: what the tuning rules make of a plant.
+//! * [`reproduce`]: every table of the papers, computed again.
 //! * [`cli`]: the program `controller-sim`.
 //!
 //! ```
@@ -32,6 +34,7 @@ pub mod log;
 pub mod output;
 pub mod plant;
 pub mod report;
+pub mod reproduce;
 pub mod scenario;
 pub mod simulate;
 pub mod tuning;

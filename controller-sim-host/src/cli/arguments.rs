@@ -1,6 +1,8 @@
 //! The arguments of the program.
 
 use super::examples;
+use super::reproduce::ReproduceArguments;
+use super::wish::Wish;
 use super::identify::IdentifyArguments;
 use super::wish::Wish;
 use crate::simulate::Precision;
@@ -35,6 +37,8 @@ pub(super) enum Command {
     Analyze(super::analyze::AnalyzeArguments),
     /// Judges from a recorded experiment whether a PI loop is tuned for loads
     Assess(super::assess::AssessArguments),
+    /// Computes the tables of the papers again: printed, true, ours, verdict
+    Reproduce(ReproduceArguments),
     /// Prints the completions for a shell
     Completions(CompletionsArguments),
     /// Prints the manual page

@@ -83,6 +83,15 @@ Examples:
 
 The noise gain is 4/|K| or what is attainable; Ms is kept at 2 or below by the filter of the estimator.
 Exit code 3: the log or the rule gives no loop; the message says why and what helps.";
+pub(super) const REPRODUCE: &str = "\
+Examples:
+  controller-sim reproduce                        every table of the three papers
+  controller-sim reproduce --paper de --table 5   one of them
+  controller-sim reproduce --paper pi             those of one paper
+  controller-sim reproduce --json > tables.json
+
+Printed is what the paper says, true what an independent computation gives, ours what this program gives; the verdict
+is about the paper. Exit code 1: ours differs from true by more than the tolerance of a cell.";
 
 pub(super) const COMPLETIONS: &str = "\
 Examples:

@@ -16,6 +16,17 @@ const EVERY: Duration = Duration::from_millis(200);
 /// Does `work` and shows on the terminal how much of `total` samples is done; nothing off a terminal, and nothing of what
 /// takes less than a second.
 pub(super) fn watch<T>(control: &Control, total: u64, quiet: bool, work: impl FnOnce() -> T) -> T {
+    watch_count("samples", || control.done(), total, quiet, work)
+}
+
+/// [`watch`] for whatever `done` counts.
+pub(super) fn watch_count<T>(
+    what: &'static str,
+    done: impl Fn() -> u64 + Send,
+    total: u64,
+    quiet: bool,
+    work: impl FnOnce() -> T,
+) -> T {
     if quiet || !is_terminal() {
         return work();
     }
@@ -26,7 +37,7 @@ pub(super) fn watch<T>(control: &Control, total: u64, quiet: bool, work: impl Fn
             let mut bar: Option<ProgressBar> = None;
             while is_finished.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
                 wait = EVERY;
-                bar.get_or_insert_with(|| self::bar(total)).set_position(control.done());
+                bar.get_or_insert_with(|| self::bar(total, what)).set_position(done());
             }
             if let Some(bar) = bar {
                 bar.finish_and_clear();
@@ -45,13 +56,13 @@ fn is_terminal() -> bool {
 }
 
 /// Without colours: `NO_COLOR` has nothing to take away.
-fn bar(total: u64) -> ProgressBar {
+fn bar(total: u64, what: &'static str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {speed}  {left}");
     let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> ");
     let style = style
-        .with_key("speed", |state: &ProgressState, to: &mut dyn Write| {
-            let _ = write!(to, "{} samples/s", large(rate(state)));
+        .with_key("speed", move |state: &ProgressState, to: &mut dyn Write| {
+            let _ = write!(to, "{} {what}/s", large(rate(state)));
         })
         .with_key("left", |state: &ProgressState, to: &mut dyn Write| {
             let rest = state.len().unwrap_or(0).saturating_sub(state.pos()) as f64;
@@ -73,7 +84,8 @@ fn large(x: f64) -> String {
         x if x >= 1e9 => format!("{:.2} G", x / 1e9),
         x if x >= 1e6 => format!("{:.2} M", x / 1e6),
         x if x >= 1e3 => format!("{:.0} k", x / 1e3),
-        x => format!("{x:.0}"),
+        x if x >= 10.0 => format!("{x:.0}"),
+        x => format!("{x:.1}"),
     }
 }
 
@@ -92,7 +104,7 @@ mod tests {
 
     #[test]
     fn rates_and_times_are_short() {
-        assert_eq!([12.0, 4321.0, 1.234e6, 5.6e9].map(large), ["12", "4 k", "1.23 M", "5.60 G"]);
+        assert_eq!([0.43, 12.0, 4321.0, 1.234e6, 5.6e9].map(large), ["0.4", "12", "4 k", "1.23 M", "5.60 G"]);
         let shown = [5.2, 75.0, 3725.0].map(time);
         assert_eq!(shown, ["5 s", "1 min 15 s", "1 h 02 min"]);
     }

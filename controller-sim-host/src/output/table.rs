@@ -140,6 +140,11 @@ pub(crate) fn best(block: &Block<'_>) -> [Option<String>; 6] {
 
 /// Four significant digits.
 pub(crate) fn format_number(x: f64) -> String {
+    format_digits(x, 4)
+}
+
+/// As many significant digits, 1 or more.
+pub(crate) fn format_digits(x: f64, digits: u8) -> String {
     if !x.is_finite() {
         return "-".to_owned();
     }
@@ -147,13 +152,17 @@ pub(crate) fn format_number(x: f64) -> String {
         return "0".to_owned();
     }
     // The exponent after the rounding, which may carry into the next power of ten.
-    let rounded = format!("{x:.3e}");
+    let most = usize::from(digits.max(1)) - 1;
+    let rounded = format!("{x:.most$e}");
     let exponent: i32 = rounded.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     match exponent {
-        -4..6 => format!("{x:.digits$}", digits = usize::try_from(3 - exponent).unwrap_or(0)),
+        -4..6 => {
+            let after = i32::from(digits.max(1)) - 1 - exponent;
+            format!("{x:.after$}", after = usize::try_from(after).unwrap_or(0))
+        }
         -99..100 => rounded,
         // An exponent of three digits takes the place of one.
-        _ => format!("{x:.2e}"),
+        _ => format!("{x:.less$e}", less = most.saturating_sub(1)),
     }
 }
 
