@@ -100,9 +100,9 @@ fn wrong_arguments_have_a_help() {
         (&["s.toml"][..], "controller-sim run s.toml"),
         (&["none.toml"], "controller-sim run none.toml"),
         (&["my file"], "controller-sim run 'my file'"),
-        (&["design"], "the command `design` is not in this version"),
-        (&["reproduce", "--json"], "the command `reproduce` is not in this version"),
-        (&["assess", "s.toml"], "not in this version"),
+        (&["export"], "the command `export` is not in this version"),
+        (&["batch", "--json"], "the command `batch` is not in this version"),
+        (&["batch", "s.toml"], "not in this version"),
         (&["run", "s.toml", "--force"], "--csv <FILE>"),
     ] {
         let output = folder.run(arguments);

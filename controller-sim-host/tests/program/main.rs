@@ -13,6 +13,7 @@ mod identify;
 mod interrupt;
 mod pages;
 mod parquet;
+mod reproduced;
 mod runs;
 mod same_bytes;
 mod schema;

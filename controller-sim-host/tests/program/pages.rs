@@ -2,8 +2,19 @@
 
 use crate::folder::{Folder, json, text};
 
-const COMMANDS: [&str; 10] =
-    ["run", "demo", "design", "tune", "identify", "analyze", "assess", "completions", "man", "schema"];
+const COMMANDS: [&str; 11] = [
+    "run",
+    "demo",
+    "design",
+    "tune",
+    "identify",
+    "analyze",
+    "assess",
+    "reproduce",
+    "completions",
+    "man",
+    "schema",
+];
 
 #[test]
 fn every_command_has_a_help_with_examples() {
