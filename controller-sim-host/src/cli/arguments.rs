@@ -1,9 +1,8 @@
 //! The arguments of the program.
 
 use super::examples;
-use super::reproduce::ReproduceArguments;
-use super::wish::Wish;
 use super::identify::IdentifyArguments;
+use super::reproduce::ReproduceArguments;
 use super::wish::Wish;
 use crate::simulate::Precision;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
