@@ -28,6 +28,7 @@ use crate::model::TransferFunction;
 use controller_core::{AdrcConfig, EstimatorConfig, ObserverConfig, PidConfig};
 
 /// What runs: the configuration of the blocks.
+#[allow(clippy::large_enum_variant)] // one of a design, never copied in a step
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// A PID, with at most one disturbance block.

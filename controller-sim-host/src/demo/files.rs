@@ -16,6 +16,7 @@ pub(super) const ALL: &[(&str, &str)] = texts![
     "chapter-gp4.toml",
     "chapter-gp5.toml",
     "chapter-gp6.toml",
+    "step-test.toml",
     "windup.toml",
     "sensor.toml",
     "cascade.toml",

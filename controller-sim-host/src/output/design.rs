@@ -1,6 +1,6 @@
 //! A design for people: what was designed, what it promises, what to do with it.
 
-use super::table::format_number;
+use super::table::{format_number, rounded_numbers};
 use crate::scenario::show_short;
 use controller_core::PidConfig;
 use controller_design::areas::Areas;
@@ -10,7 +10,7 @@ use std::fmt::Write;
 /// What was designed as text, at most 100 columns wide.
 #[must_use]
 pub fn design_table(made: &Design) -> String {
-    let mut text = format!("{} for {}\n", made.method.title(), made.plant);
+    let mut text = format!("{} for {}\n", made.method.title(), rounded_numbers(&made.plant.to_string()));
     let latency = if made.latency > 0.0 { format!(", latency {} s", made.latency) } else { String::new() };
     line(&mut text, format_args!("{}, ts = {} s{latency}", made.method.source(), made.ts));
     text.push_str("\nparameters\n");

@@ -138,6 +138,25 @@ pub(crate) fn best(block: &Block<'_>) -> [Option<String>; 6] {
     columns
 }
 
+/// An expression with its numbers rounded to six digits: a fitted one has more than anybody reads.
+pub(crate) fn rounded_numbers(expression: &str) -> String {
+    let mut text = String::new();
+    let mut rest = expression;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let (before, number) = rest.split_at(start);
+        let is_part = |(i, c): (usize, char)| {
+            let after_e = i > 0 && number.as_bytes().get(i - 1) == Some(&b'e');
+            !(c.is_ascii_digit() || c == '.' || c == 'e' || (after_e && matches!(c, '-' | '+')))
+        };
+        let end = number.char_indices().find(|&at| is_part(at)).map_or(number.len(), |(i, _)| i);
+        let (number, after) = number.split_at(end);
+        text.push_str(before);
+        text.push_str(&number.parse().map_or_else(|_| number.to_owned(), crate::scenario::show_short));
+        rest = after;
+    }
+    text + rest
+}
+
 /// Four significant digits.
 pub(crate) fn format_number(x: f64) -> String {
     format_digits(x, 4)
@@ -169,6 +188,14 @@ pub(crate) fn format_digits(x: f64, digits: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_an_expression_are_rounded() {
+        let long = "1.39999943690*exp(-5.97606503799*s)/(1+123.006674633*s+3.16461740206e-7*s^2)";
+        assert_eq!(rounded_numbers(long), "1.4*exp(-5.97607*s)/(1+123.007*s+3.16462e-7*s^2)");
+        let plain = "exp(-0.2*s)/((1+0.2*s)*(1+s)^4)";
+        assert_eq!(rounded_numbers(plain), plain);
+    }
 
     #[test]
     fn numbers_have_four_digits_and_fit_their_cells() {

@@ -4,7 +4,7 @@ use super::design::{design_table, parameters};
 use super::design_json::Designed;
 use super::identification::{Identification, Object as Identified, identify_table};
 use super::json::text;
-use super::table::format_number;
+use super::table::{format_number, rounded_numbers};
 use crate::simulate::Metrics;
 use controller_design::design::Design;
 use serde::Serialize;
@@ -35,7 +35,7 @@ impl Tuning<'_> {
         let made = self.made;
         let mut rows = vec![
             ("method".to_owned(), format!("{}, {}", made.method.title(), made.method.source())),
-            ("model".to_owned(), made.plant.to_string()),
+            ("model".to_owned(), rounded_numbers(&made.plant.to_string())),
             ("largest residual of the model".to_owned(), format!("{} y", format_number(self.worst_residual))),
             ("sampling period".to_owned(), format!("{} s", made.ts)),
         ];

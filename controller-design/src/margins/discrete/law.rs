@@ -108,7 +108,7 @@ impl DiscreteLaw {
         let z_minus_one = minus_one(theta);
         let c = match &self.kind {
             Kind::Pid(pid) => pid,
-            Kind::Adrc(law) => return Estimator::new(law, theta).from_y(law),
+            Kind::Adrc(law) => return Estimator::new(law, theta).feedback(law),
         };
         let tap = Tap::new(c.g, z_minus_one);
         let filtered = tap.value * c.p_y + tap.difference * c.h_y;
@@ -209,7 +209,7 @@ impl Estimator {
     }
 
     /// `-C_y`: from `-y` to `u`.
-    fn from_y(&self, law: &AdrcCoefficients<f64>) -> Complex {
+    fn feedback(&self, law: &AdrcCoefficients<f64>) -> Complex {
         let Self { q, n, p, .. } = *self;
         let square = n * n;
         let z1 = Complex::ONE - square * n / p * (1.0 - law.l1);
