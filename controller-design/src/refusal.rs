@@ -77,9 +77,27 @@ impl fmt::Display for Refusal {
                 write!(f, "{parameter} = {value} is outside the range {min} to {max}")
             }
             Self::Unattainable { what, asked, least } => {
-                write!(f, "{what} cannot be {asked}: the least attainable is {least}")
+                write!(f, "{what} cannot be {}: the least attainable is {}", Short(*asked), Short(*least))
             }
             Self::NoSolution { why, .. } | Self::Data { why, .. } => f.write_str(why),
+        }
+    }
+}
+
+/// A number with as many digits as a message needs.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let x = self.0;
+        let size = if x < 0.0 { -x } else { x };
+        // A whole or short number as it was written, a computed one rounded up to four digits behind the point.
+        if x == libm::round(x * 1e4) / 1e4 && size < 1e6 {
+            write!(f, "{x}")
+        } else if (1e-2..1e6).contains(&size) {
+            write!(f, "{}", libm::ceil(x * 1e4) / 1e4)
+        } else {
+            write!(f, "{x:.4e}")
         }
     }
 }

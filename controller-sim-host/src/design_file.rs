@@ -4,13 +4,17 @@ use crate::scenario::{self, ControllerSpec, DesignFile, Units};
 use controller_core::{LimitConfig, PidConfig};
 use controller_design::design::{Design, Law};
 
+/// The slowest time constants there are until a step is over: what is left is `exp(-9)`, 1e-4.
+const SETTLING: f64 = 9.0;
 /// Longest run of a design file, in samples.
 const LONGEST: f64 = 2e6;
 
-/// The design file of `made`: its controller, and unit steps of the set-point and of the load. `command` is what made it.
+/// The design file of `made`: its controller, and unit steps of the set-point and of the load. With `limits` the loop rests
+/// in the middle of them and the steps are as large as they allow. `command` is what made it.
 #[must_use]
 pub fn of(made: &Design, limits: Option<(f64, f64)>, command: &str) -> DesignFile {
     let title = made.method.title();
+    let (rest, [setpoint_step, load_step]) = limits.map_or((0.0, [1.0, 1.0]), |range| within(made, range));
     let mut controller = ControllerSpec::pid(title, PidConfig::default());
     scenario::apply(made, &mut controller);
     if let Some((lo, hi)) = limits {
@@ -26,14 +30,41 @@ pub fn of(made: &Design, limits: Option<(f64, f64)>, command: &str) -> DesignFil
         latency: made.latency,
         plant: made.plant.clone(),
         initial_setpoint: 0.0,
-        initial_load: 0.0,
-        setpoint_step: 1.0,
-        load_step: 1.0,
+        initial_load: -rest,
+        setpoint_step,
+        load_step,
         window: window(made),
         noise: 0.0,
         resolution: 0.0,
         controller,
     }
+}
+
+/// The middle of the output's range, and steps of set-point and load after which the output stays well inside: the load
+/// moves it by a tenth of the range, the set-point by that at the end and by at most a third at once.
+fn within(made: &Design, (lo, hi): (f64, f64)) -> (f64, [f64; 2]) {
+    let range = hi - lo;
+    let at_once = match &made.law {
+        Law::Pid { pid, .. } if pid.tf > 0.0 => {
+            (pid.b * pid.kp).abs().max((pid.b * pid.kp + pid.c * pid.kd / pid.tf).abs())
+        }
+        Law::Pid { pid, .. } => (pid.b * pid.kp).abs(),
+        Law::Adrc(adrc) => (adrc.kp / adrc.b0).abs(),
+    };
+    let by_kick = range / (3.0 * at_once);
+    let by_rest =
+        if made.plant.integrators() > 0 { f64::INFINITY } else { 0.1 * range * made.plant.gain().abs() };
+    let setpoint = by_kick.min(by_rest);
+    let setpoint = if setpoint.is_finite() && setpoint > 0.0 { setpoint } else { 1.0 };
+    (0.5 * (lo + hi), [round_down(setpoint), round_down(0.1 * range)])
+}
+
+/// The next number below of the series 1, 2, 5.
+pub(crate) fn round_down(x: f64) -> f64 {
+    let decade = libm::pow(10.0, libm::floor(libm::log10(x)));
+    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * decade <= x).unwrap_or(1.0);
+    // By way of text: the nearest number to the decimal one.
+    format!("{:.0e}", step * decade).parse().unwrap_or(x)
 }
 
 /// A title has room for 120 characters.
@@ -45,8 +76,7 @@ fn shortened(plant: &str) -> String {
     format!("{start}...")
 }
 
-/// Time until the response to a step is over: 14 of the slowest time constants there are (`exp(-14)` is 1e-6), in
-/// whole samples.
+/// Time until the response to a step is over: in whole samples.
 fn window(made: &Design) -> f64 {
     let plant = &made.plant;
     let poles = plant.poles();
@@ -70,7 +100,7 @@ fn window(made: &Design) -> f64 {
         let mode = made.predicted.ie_setpoint.map_or(0.0, f64::abs);
         slowest = slowest.max(mode + lags.sum::<f64>()).max(adrc.kd / adrc.kp);
     }
-    let samples = ((14.0 * slowest + 10.0 * dead_time) / made.ts).clamp(10.0, LONGEST);
+    let samples = ((SETTLING * slowest + 10.0 * dead_time) / made.ts).clamp(10.0, LONGEST);
     // By way of text: a round number of seconds stays one.
     format!("{:.11e}", samples.ceil() * made.ts).parse().unwrap_or(made.ts)
 }

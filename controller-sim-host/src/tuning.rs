@@ -23,6 +23,8 @@ pub struct Known {
     pub units: Units,
     /// What the process is called.
     pub name: String,
+    /// What the controller is called; `None`: the method.
+    pub controller: Option<String>,
     /// What was typed.
     pub command: String,
 }
@@ -77,6 +79,14 @@ fn designed(found: &Identified, request: &Request) -> Result<Design, Refusal> {
     design_with_areas(&plant, measured, request)
 }
 
+/// The process of a recording as a plant, for the comparison of all rules.
+///
+/// # Errors
+/// What the identification refuses.
+pub fn plant_of(found: &Identified) -> Result<TransferFunction, Refusal> {
+    plant(found)
+}
+
 /// The model in whose place the controller works: the fit that was chosen, else the model of second order.
 fn plant(found: &Identified) -> Result<TransferFunction, Refusal> {
     const NONE: Refusal = Refusal::Data {
@@ -101,17 +111,23 @@ fn plant(found: &Identified) -> Result<TransferFunction, Refusal> {
 fn file(found: &Identified, made: &Design, known: &Known) -> DesignFile {
     let mut file = design_file::of(made, known.limits, &known.command);
     file.title = format!("{} for the process of {}", made.method.title(), known.name);
-    // Half of what leaves nothing of a step: the noise covers the rest.
-    file.window = made.ts * (0.5 * file.window / made.ts).ceil();
+    if let Some(name) = &known.controller {
+        file.controller.name.clone_from(name);
+    }
     file.units = known.units.clone();
-    file.initial_setpoint = found.y0;
-    file.initial_load = found.y0 / made.plant.gain() - found.u0;
-    file.setpoint_step = found.y_inf - found.y0;
-    file.load_step = LOAD * (found.u_inf - found.u0);
+    file.initial_setpoint = rounded(found.y0);
+    file.initial_load = rounded(found.y0 / made.plant.gain() - found.u0);
+    file.setpoint_step = rounded(found.y_inf - found.y0);
+    file.load_step = rounded(LOAD * (found.u_inf - found.u0));
     // What a converter rounds away is no noise of its own.
-    file.noise = if found.sigma > 0.5 * found.quantisation { found.sigma } else { 0.0 };
-    file.resolution = found.quantisation;
+    file.noise = if found.sigma > 0.5 * found.quantisation { rounded(found.sigma) } else { 0.0 };
+    file.resolution = rounded(found.quantisation);
     file
+}
+
+/// Four digits: an operating point is no exact number.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 fn warnings(recording: &Recording<'_>, found: &Identified, made: &Design, known: &Known) -> Vec<String> {

@@ -29,7 +29,7 @@ fn made(plant: &str, request: &Request) -> Option<Design> {
 }
 
 fn scenario(made: &Design) -> Scenario {
-    let text = design_file::of(made, Some((-1e6, 1e6)), "a test").text();
+    let text = design_file::of(made, None, "a test").text();
     match read(&text, Precision::F64) {
         Ok(read) => read.scenario,
         Err(faults) => panic!("{faults:?} in\n{text}"),
@@ -43,7 +43,7 @@ fn events(scenario: &Scenario) -> [Metrics; 2] {
 }
 
 /// Closed forms for `ts*sum(e)`: `(1/K + (1-b)*kp)/ki` for the set-point, `-1/ki`, `-(1-kfd)/ki` or 0 for the load; of an
-/// ADRC those of its sampled observer. Only the tail that the window cuts off is missing.
+/// ADRC those of its sampled observer. Only the tail that the window cuts off, exp(-9), is missing.
 #[test]
 fn every_method_gives_the_integrals_of_the_error_that_it_predicts() {
     let mut counts = [0; Method::ALL.len()];
@@ -60,7 +60,7 @@ fn every_method_gives_the_integrals_of_the_error_that_it_predicts() {
                     [("set-point", predicted[0], &setpoint), ("load", predicted[1], &load)]
                 {
                     let expected = expected.expect("a prediction");
-                    let tolerance = 1e-5 * found.iae.max(expected.abs());
+                    let tolerance = 3e-4 * found.iae.max(expected.abs());
                     assert!(
                         (found.ie - expected).abs() <= tolerance,
                         "{plant}, {}, latency {latency}, {what}: {} instead of {expected}",
@@ -89,6 +89,33 @@ fn the_least_iae_is_found_in_the_run() {
         let limit = 2.0 * fine - coarse;
         assert!((limit / expected - 1.0).abs() < 2e-3, "{plant}: {limit} instead of {expected}");
         assert!((fine / expected - 1.0).abs() < 0.03, "{plant}: {fine} instead of {expected}");
+    }
+}
+
+/// With limits the file's steps are as large as these allow, and the predicted integrals come out per unit: nothing is
+/// limited on the way.
+#[test]
+fn steps_of_a_limited_loop_stay_inside() {
+    for plant in
+        ["2*exp(-3*s)/((1+40*s)*(1+8*s))", "-0.4*exp(-2*s)/((1+12*s)*(1+3*s))", "0.02*exp(-2*s)/(s*(1+s))"]
+    {
+        for method in Method::ALL {
+            let Some(made) = made(plant, &Request::new(method, 0.2)) else { continue };
+            for limits in [(0.0, 100.0), (-10.0, 30.0)] {
+                let file = design_file::of(&made, Some(limits), "a test");
+                let read = read(&file.text(), Precision::F64).expect("a scenario").scenario;
+                let [setpoint, load] = events(&read);
+                let what = format!("{plant}, {}, {limits:?}", method.name());
+                let expected = made.predicted.ie_setpoint.expect("a prediction") * file.setpoint_step;
+                assert!(
+                    (setpoint.ie - expected).abs() <= 1e-3 * setpoint.iae,
+                    "{what}: {} {expected}",
+                    setpoint.ie
+                );
+                let expected = made.predicted.ie_load.expect("a prediction") * file.load_step;
+                assert!((load.ie - expected).abs() <= 1e-3 * load.iae, "{what}: {} {expected}", load.ie);
+            }
+        }
     }
 }
 

@@ -29,6 +29,8 @@ const DEFAULT_NOISE_RATIO: f64 = 4.0;
 /// Default limit of the maximum sensitivity with an observer whose noise ratio is chosen.
 const DEFAULT_MS_MAX: f64 = 2.0;
 
+/// Largest maximum sensitivity of a robust loop.
+const ROBUST: f64 = 2.0;
 /// Delay margin in samples below which the sampling period is too long.
 const FEW_SAMPLES: f64 = 10.0;
 
@@ -354,6 +356,11 @@ fn finish(
     }
     if let Law::Adrc(config) = &law {
         predicted = of_adrc(config, delayed, request.ts).unwrap_or(predicted);
+    }
+    let ms = robustness.ms.max(sampled.margins.ms);
+    if ms > ROBUST && request.ms.is_none_or(|asked| asked < ROBUST) && request.ms_max.is_none() {
+        let text = "above 2, little robustness: a slower filter, a smaller noise gain or ms_max lowers it";
+        warn(&mut warnings, Warning::Value { about: "Ms", value: ms, text });
     }
     if let Some(samples) = few_samples(&sampled.margins, request.ts) {
         let text =

@@ -125,7 +125,7 @@ pub(super) struct Options {
 #[command(after_help = examples::DESIGN)]
 pub(super) struct DesignArguments {
     /// The plant, an expression in s such as `2*exp(-0.5*s)/(1+3*s)`
-    #[arg(long, value_name = "EXPR")]
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub(super) plant: String,
     /// The tuning rule; `advise` compares all of them on the plant
     #[arg(long, value_enum)]

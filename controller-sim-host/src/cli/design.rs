@@ -31,7 +31,10 @@ pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Res
     let target = arguments.save.as_ref().map(|path| FileTarget::new(path, arguments.force)).transpose()?;
     let made = design(&plant, &arguments.wish.request(method, ts, None)).map_err(|r| refused(method, &r))?;
     if let Some(target) = &target {
-        let file = design_file::of(&made, arguments.wish.limits, command);
+        let mut file = design_file::of(&made, arguments.wish.limits, command);
+        if let Some(name) = &arguments.wish.name {
+            file.controller.name.clone_from(name);
+        }
         target.write(|to| to.write_all(file.text().as_bytes())).map_err(Failure::internal)?;
     }
     let saved = target.map(|target| target.path().display().to_string());

@@ -4,19 +4,22 @@ use super::arguments::MethodName;
 use super::design::refused;
 use super::quoting::quoted;
 use super::run::OPEN;
-use super::step_log::{StepLog, recording};
+use super::step_log::{StepLog, recording, refused as unusable};
 use super::wish::{Wish, positive};
 use super::{Failure, colours, examples, print};
+use crate::advise::advise;
 use crate::analysis::analyse;
+use crate::log::Log;
 use crate::output::{
-    Analysed, FileTarget, Identification, Problem, Severity, Source, Tuning, publish, render, tune_json,
-    tune_table,
+    Analysed, FileTarget, Identification, Problem, Severity, Source, Tuning, advice_json, advice_table,
+    publish, render, tune_json, tune_table,
 };
 use crate::report::{self, Chapter};
 use crate::scenario::{Units, read};
 use crate::simulate::{COLUMNS, Metrics, Precision, RunOptions, View, run as simulate};
-use crate::tuning::{Known, Tuned, tune};
+use crate::tuning::{Known, Tuned, plant_of, tune};
 use clap::{Args, ValueHint};
+use controller_design::identification::{IdentifyOptions, identify};
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -49,12 +52,7 @@ pub(super) struct TuneArguments {
 
 /// `command` is what was typed.
 pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Result<(), Failure> {
-    let Some(method) = arguments.method.one() else {
-        let problem = Problem::new("usage", "`tune` needs one method");
-        let help =
-            "identify the process first, then compare: `controller-sim design --plant EXPR --method advise`";
-        return Err(problem.help(help).into());
-    };
+    let Some(method) = arguments.method.one() else { return compare(arguments, json) };
     let mut problems = arguments.wish.idle(method);
     let target = |option: &str, path: &Option<PathBuf>, problems: &mut Vec<Problem>| {
         let checked = path.as_ref().map(|path| arguments.record.target(option, path, arguments.force));
@@ -68,12 +66,12 @@ pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Resul
     let (source, log) = arguments.record.read(None)?;
     let recording = recording(&source, &log)?;
     let ts = arguments.ts.unwrap_or_else(|| usual_distance(recording.t));
-    let unit = |index: usize| log.units.get(index).cloned().unwrap_or_default();
-    let units = Units { y: unit(2), u: unit(1) };
+    let units = Units { y: unit(&log, 2), u: unit(&log, 1) };
     let known = Known {
         limits: arguments.wish.limits,
         units,
         name: file_name(&source.name),
+        controller: arguments.wish.name.clone(),
         command: command.to_owned(),
     };
     let request = arguments.wish.request(method, ts, Some(MS_MAX).filter(|_| method.has_block()));
@@ -112,6 +110,35 @@ pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Resul
         print(&format!("\nwrote {path}: open it by: {OPEN} {}\n", quoted(&path)))?;
     }
     Ok(())
+}
+
+/// All rules on the process of the log.
+fn compare(arguments: &TuneArguments, json: bool) -> Result<(), Failure> {
+    if arguments.save.is_some() || arguments.report.is_some() {
+        let problem =
+            Problem::new("usage", "`--save` and `--report` need one method; `advise` compares all of them");
+        return Err(problem.help("choose one of them, then tune by it").into());
+    }
+    let (source, log) = arguments.record.read(None)?;
+    let recording = recording(&source, &log)?;
+    let ts = arguments.ts.unwrap_or_else(|| usual_distance(recording.t));
+    let found = identify(&recording, &IdentifyOptions::default());
+    let plant =
+        found.and_then(|found| plant_of(&found)).map_err(|refusal| unusable(&source, &log, &refusal))?;
+    let advice = advise(&plant, ts, |method| {
+        arguments.wish.request(method, ts, Some(MS_MAX).filter(|_| method.has_block()))
+    });
+    Ok(print(&if json { advice_json(&advice) } else { advice_table(&advice) })?)
+}
+
+/// The unit of a column: below its name, or in brackets behind it.
+fn unit(log: &Log, index: usize) -> String {
+    let of = |list: &[String]| list.get(index).cloned().unwrap_or_default();
+    let (unit, title) = (of(&log.units), of(&log.titles));
+    let in_brackets =
+        title.rsplit_once(['[', '(']).and_then(|(_, rest)| rest.trim_end().strip_suffix([']', ')']));
+    let unit = if unit.is_empty() { in_brackets.unwrap_or("").trim().to_owned() } else { unit };
+    unit.chars().filter(|c| !c.is_control()).take(20).collect()
 }
 
 fn filled(target: &FileTarget, text: &str) -> Result<crate::output::Complete, Failure> {

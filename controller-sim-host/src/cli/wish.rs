@@ -41,6 +41,9 @@ pub(super) struct Wish {
     /// From reading the measurement to acting with the output \[s\]
     #[arg(long, value_name = "S", value_parser = time, default_value_t = 0.0)]
     pub(super) latency: f64,
+    /// What the controller is called in the design file; default: the method
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub(super) name: Option<String>,
     /// Range of the output, for the design file
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     pub(super) limits: Option<(f64, f64)>,
@@ -116,10 +119,7 @@ pub(super) fn usual_period(plant: &TransferFunction) -> f64 {
     };
     let whole = plant.dead_time() + span(plant.poles());
     let wanted = if whole > 0.0 && whole.is_finite() { whole / 200.0 } else { 0.01 };
-    let decade = libm::pow(10.0, libm::floor(libm::log10(wanted)));
-    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * decade <= wanted).unwrap_or(1.0);
-    // By way of text: the nearest number to the decimal one.
-    format!("{:.0e}", step * decade).parse().unwrap_or(wanted)
+    crate::design_file::round_down(wanted)
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -144,6 +144,15 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 
 fn sensitivity(text: &str) -> Result<f64, String> {
     bounded(text, |x| (1.001..=100.0).contains(&x), "1.001 to 100")
+}
+
+fn name(text: &str) -> Result<String, String> {
+    let is_good = (1..=60).contains(&text.chars().count()) && !text.contains(char::is_control);
+    if is_good && !text.trim().is_empty() {
+        Ok(text.to_owned())
+    } else {
+        Err("write 1 to 60 characters on one line".to_owned())
+    }
 }
 
 fn range(text: &str) -> Result<(f64, f64), String> {

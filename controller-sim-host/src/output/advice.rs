@@ -7,6 +7,8 @@ use crate::advise::{Advice, Outcome, Row};
 use serde::Serialize;
 use std::fmt::Write;
 
+/// Largest maximum sensitivity of a robust loop.
+const ROBUST: f64 = 2.0;
 const COLUMNS: [&str; 6] = ["IAE sp", "IAE load", "Ms", "noise", "delay m.", "samples"];
 
 /// The comparison as text, at most 100 columns wide.
@@ -22,7 +24,13 @@ pub fn advice_table(advice: &Advice) -> String {
     for row in &advice.rows {
         let name = row.method.name();
         match &row.outcome {
-            Ok(made) => line(format!("  {name:<9}{}", cells(numbers(made).map(format_number)))),
+            Ok(made) => {
+                let mut shown = numbers(made).map(format_number);
+                if made.design.sampled.margins.ms > ROBUST {
+                    shown[2].push('!');
+                }
+                line(format!("  {name:<9}{}", cells(shown)));
+            }
             Err(_) => line(format!("  {name:<9}{:>11}", "refused")),
         }
     }
@@ -35,6 +43,7 @@ pub fn advice_table(advice: &Advice) -> String {
         "noise: std(u)/std(n) for white noise on the measurement [u/y]; delay margin [s], and in samples"
             .to_owned(),
     );
+    line("! little robustness: Ms above 2; `--ms-max 2` slows the block of de-momi and dob down".to_owned());
     line(format!("\n{}", advice.on_the_period()));
     line("\ntake it when".to_owned());
     for row in &advice.rows {

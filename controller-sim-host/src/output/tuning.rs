@@ -4,7 +4,7 @@ use super::design::{design_table, parameters};
 use super::design_json::Designed;
 use super::identification::{Identification, Object as Identified, identify_table};
 use super::json::text;
-use super::table::{format_number, rounded_numbers};
+use super::table::format_number;
 use crate::simulate::Metrics;
 use controller_design::design::Design;
 use serde::Serialize;
@@ -30,30 +30,41 @@ impl Tuning<'_> {
         self.made.warnings.iter().map(ToString::to_string).chain(self.warnings.iter().cloned()).collect()
     }
 
-    /// What goes into a commissioning file: names and values with units.
-    pub(crate) fn rows(&self) -> Vec<(String, String)> {
+    /// What goes into a commissioning file, in groups: names, values with units.
+    pub(crate) fn groups(&self) -> [(&'static str, Vec<(String, String)>); 3] {
         let made = self.made;
-        let mut rows = vec![
-            ("method".to_owned(), format!("{}, {}", made.method.title(), made.method.source())),
-            ("model".to_owned(), rounded_numbers(&made.plant.to_string())),
-            ("largest residual of the model".to_owned(), format!("{} y", format_number(self.worst_residual))),
-            ("sampling period".to_owned(), format!("{} s", made.ts)),
-        ];
-        rows.extend(parameters(&made.law).into_iter().map(|(name, value)| (name.to_owned(), value)));
-        let margins = &made.sampled.margins;
-        for (name, value) in [
-            ("Ms, sampled", margins.ms),
-            ("gain margin", margins.gm),
-            ("phase margin [deg]", margins.pm_deg),
-            ("delay margin [s]", margins.delay_margin),
-            ("std(u)/std(n)", made.sampled.noise.white),
-            ("IAE of the set-point step [y s]", self.events[0].iae),
-            ("IAE of the load step [y s]", self.events[1].iae),
-            ("largest error of the load step [y]", self.events[1].e_max),
-        ] {
-            rows.push((name.to_owned(), format_number(value)));
+        let own = |rows: Vec<(&str, String)>| {
+            rows.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        };
+        let mut controller = vec![("sampling period", format!("{} s", made.ts))];
+        if made.latency > 0.0 {
+            controller.push(("latency", format!("{} s", made.latency)));
         }
-        rows
+        controller.extend(parameters(&made.law));
+        let (margins, number) = (&made.sampled.margins, format_number);
+        let [setpoint, load] = &self.events;
+        [
+            ("Parameters", own(controller)),
+            (
+                "Robustness, sampled",
+                own(vec![
+                    ("Ms", number(margins.ms)),
+                    ("gain margin", number(margins.gm)),
+                    ("phase margin", format!("{} deg", number(margins.pm_deg))),
+                    ("delay margin", format!("{} s", number(margins.delay_margin))),
+                    ("noise, std(u)/std(n)", format!("{} u/y", number(made.sampled.noise.white))),
+                ]),
+            ),
+            (
+                "Simulated",
+                own(vec![
+                    ("IAE of the set-point step", format!("{} y s", number(setpoint.iae))),
+                    ("IAE of the load step", format!("{} y s", number(load.iae))),
+                    ("largest error of the load step", format!("{} y", number(load.e_max))),
+                    ("largest residual of the model", format!("{} y", number(self.worst_residual))),
+                ]),
+            ),
+        ]
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::page::document;
 use super::{Chapter, analysis, chapter, identification};
+use crate::output::table::rounded_numbers;
 use crate::output::{Analysed, Tuning};
 use maud::{Markup, html};
 
@@ -39,19 +40,27 @@ pub(super) fn page(
 
 /// What was chosen, what it promises, and what to know.
 fn summary(tuning: &Tuning<'_>) -> Markup {
-    let rows = tuning.rows();
+    let groups = tuning.groups();
     let notes = tuning.notes();
+    let made = tuning.made;
     html! {
         @if !notes.is_empty() {
             div class="notes" role="note" { ul { @for note in &notes { li { (note) } } } }
         }
         section aria-labelledby="summary" {
             h2 id="summary" { "For the commissioning file" }
-            div class="scroll" role="region" tabindex="0" aria-labelledby="summary" {
-                table {
-                    tbody {
-                        @for (name, value) in &rows {
-                            tr { th scope="row" class="text" { (name) } td { (value) } }
+            p { (made.method.title()) " (" (made.method.source()) ") for the model" }
+            div class="scroll" role="region" tabindex="0" aria-label="Model" {
+                pre { code { (rounded_numbers(&made.plant.to_string())) } }
+            }
+            @for (title, rows) in &groups {
+                div class="scroll" role="region" tabindex="0" aria-label=(title) {
+                    table class="areas" {
+                        thead { tr { th scope="col" class="text" { (title) } th scope="col" { "value" } } }
+                        tbody {
+                            @for (name, value) in rows {
+                                tr { th scope="row" class="text" { (name) } td { (value) } }
+                            }
                         }
                     }
                 }

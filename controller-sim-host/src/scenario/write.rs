@@ -69,9 +69,10 @@ impl DesignFile {
             push(&mut text, format_args!("\n[sensor]\nresolution = {}", number(self.resolution)));
         }
         let setpoint = number(self.initial_setpoint + self.setpoint_step);
-        push(&mut text, format_args!("\n[[event]]\nat = 0.0\nsetpoint = {setpoint}"));
+        push(&mut text, format_args!("\n[[event]]\nat = 0.0\nlabel = \"set-point\"\nsetpoint = {setpoint}"));
         let load = number(self.initial_load + self.load_step);
-        push(&mut text, format_args!("\n[[event]]\nat = {}\ndisturbance = {load}", number(self.window)));
+        let at = number(self.window);
+        push(&mut text, format_args!("\n[[event]]\nat = {at}\nlabel = \"load\"\ndisturbance = {load}"));
         text.push('\n');
         self.push_controller(&mut text);
         text

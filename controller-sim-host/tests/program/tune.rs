@@ -127,8 +127,10 @@ fn what_gives_no_loop_is_refused() {
     folder.write("valve.csv", &valve());
     let shown = folder.refused(&["tune", "valve.csv", "--input", "Pumpe"]);
     assert!(shown.contains("Pumpe"), "{shown}");
-    let shown = folder.refused(&["tune", "valve.csv", "--method", "advise"]);
-    assert!(shown.contains("needs one method"), "{shown}");
+    let shown = folder.refused(&["tune", "valve.csv", "--method", "advise", "--save", "a.toml"]);
+    assert!(shown.contains("need one method"), "{shown}");
+    let shown = folder.done(&["tune", "valve.csv", "--method", "advise"]);
+    assert!(shown.contains("de-momi") && shown.contains("take it when"), "{shown}");
     let shown = folder.refused(&["tune", "valve.csv", "--save", "valve.csv", "--force"]);
     assert!(shown.contains("is the log itself"), "{shown}");
     let columns = ["--input", "2", "--output", "3", "--time", "1"];
