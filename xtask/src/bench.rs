@@ -1,8 +1,10 @@
-//! The speed of the simulation, beside a plain loop in Python with numpy.
+//! The speed of the simulation, beside a plain loop in Python with numpy, and that of the tuning rules ([`design`]).
 //!
 //! Both compute the same loop (plant, controller, disturbance estimator); the integrals of the error show that they did.
 //! The time is that of the processor: other work on the machine disturbs it less than the clock. Runs alternate,
 //! so that a machine that gets warm or busy slows both sides.
+
+mod design;
 
 use std::path::{Path, PathBuf};
 
@@ -31,7 +33,8 @@ const MOST_SUBSTEPS: f64 = 5.0;
 /// loop as model and filter by Tustin's rule, and these differ by up to 0.5 % (by 0.1 % at this sampling period).
 const TOLERANCE: f64 = 0.005;
 
-/// Runs the benchmark and prints it; an error when the program is too slow or the two computed different loops.
+/// Runs the benchmark and prints it; an error when the program or a rule is too slow, or the two sides computed different
+/// things.
 pub(crate) fn run(root: &Path) -> Outcome {
     let program = rungs::program(root)?;
     let python = python(root)?;
@@ -80,7 +83,12 @@ pub(crate) fn run(root: &Path) -> Outcome {
     println!("  numpy loop                   {numpy}");
     println!("  controller-sim is {ratio:.0} times as fast (at least {LEAST_RATIO})");
     println!("  10 substeps take {cost:.2} times as long as 1 (at most {MOST_SUBSTEPS})");
-    judge(ratio, cost)
+    let simulation = judge(ratio, cost);
+    let rules = design::run(root, &python, &folder);
+    match (simulation, rules) {
+        (Err(one), Err(two)) => Err(format!("{one}; {two}")),
+        (one, two) => one.and(two),
+    }
 }
 
 /// Whether the program is fast enough.

@@ -11,7 +11,7 @@
 //! | [`rungs`] | what each rung of the ladder does |
 //! | [`report`] | the rung that opens the program's pages in a browser |
 //! | [`memory`] | the memory of long runs |
-//! | [`mod@bench`] | the speed of the simulation beside a loop in Python |
+//! | [`mod@bench`] | the speed of the simulation and of the tuning rules, beside Python |
 //! | [`long_runs`] | scenarios of any length for these |
 //! | [`checks`] | pure checks: dependency allow-list, same bits, file hygiene |
 //! | [`fuzz`] | bounded and long runs of the fuzz targets |
@@ -76,7 +76,7 @@ const COMMANDS: [Command; 7] = [
     },
     Command {
         name: "bench",
-        about: "the simulation beside a numpy loop; fails below 100 times",
+        about: "the simulation (fails below 100 times a numpy loop) and the time of each tuning rule",
         options: &[],
     },
     Command { name: "docs", about: "build the documentation; warnings are errors", options: &[] },
