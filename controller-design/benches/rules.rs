@@ -265,7 +265,7 @@ fn main() {
     for (name, work) in WORK.iter().filter(|(name, _)| wanted(name)) {
         line(name, cases.iter().filter_map(|case| shortest(|| work(black_box(case)))).collect());
     }
-    if wanted("PiIae, 1/(1+s)") {
+    if wanted("PiIae, exp(-s)/(1+s)") {
         // The one that Python is asked for.
         let time = shortest(|| PiIae::fopdt(black_box(1.0), 1.0, 1.0).ok().and_then(done));
         line("PiIae, exp(-s)/(1+s)", time.into_iter().collect());

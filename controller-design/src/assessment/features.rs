@@ -87,7 +87,9 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
     marks.baseline = baseline.pv;
     marks.inputs.0 = baseline.co;
     marks.span = (record.t[baseline.range.start], record.t[end - 1]);
-    marks.peak = Some(place((t_peak, y_peak)));
+    // Noise can put the top of the smoothed curve before the step.
+    let after = t1 > 0.0;
+    marks.peak = after.then(|| place((t_peak, y_peak)));
     marks.smoothed = curve.t.iter().zip(&curve.y).map(|(&t, &y)| place((t, y))).collect();
     out.marks = Some(marks.clone());
 
@@ -95,14 +97,14 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
     let (sigma, resolution) = noise(&record.t[all.clone()], &record.pv[all]);
     let white = sigma * libm::sqrt(view.signal().fit(t_peak, half_width).variance);
     let mut features = Features { p1, t1, dip: None, t_ratio: None, r3: None, sigma };
-    out.features = Some(features);
+    out.features = after.then_some(features);
     let last = record.t[parts.end - 1];
     let still = view.signal().fit(last, half_width).value.abs() * view.scale;
     if still > (2.0 * p1).max(RISE_NOISE * white) && !oscillates {
         // It is on its way to its first peak.
         return Err(parts.ended_by.unwrap_or(Reason::RecordShort(1.0)));
     }
-    if t1 <= 0.0 || p1 <= RISE_NOISE * white {
+    if !after || p1 <= RISE_NOISE * white {
         return Err(Reason::NoResponse);
     }
     if RISE_NOISE * white > MOST_NOISE * p1 {

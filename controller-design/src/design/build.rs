@@ -6,8 +6,8 @@ use super::{
     Sampled,
 };
 use crate::areas::Areas;
-use crate::margins::Margins;
 use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
+use crate::margins::{Margins, TOO_MANY_TURNS};
 use crate::model::TransferFunction;
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
 use crate::rules::reduction::Reduced;
@@ -307,14 +307,15 @@ fn sampled(plant: &TransferFunction, law: &Law, request: &Request) -> Result<Sam
     };
     let made = made.map_err(|_| LONG)?;
     let made = DiscreteLoop::new(plant, made, request.latency)?;
-    let margins = made.margins().map_err(|refusal| match refusal {
+    let (margins, noise) = made.margins_and_noise().map_err(|refusal| match refusal {
+        TOO_MANY_TURNS => refusal,
         Refusal::NoSolution { .. } => Refusal::NoSolution {
             why: "the sampled loop is not stable, although the continuous one is",
             help: "choose a shorter ts",
         },
         other => other,
     })?;
-    Ok(Sampled { margins, noise: made.noise() })
+    Ok(Sampled { margins, noise })
 }
 
 /// The delay margin in samples when it is so small that the sampling matters.

@@ -1,8 +1,10 @@
 //! Rules that are written for a simple model, and the model that each is given.
 
+use core::cell::Cell;
+
 use super::build::Job;
 use super::{Filter, Law, RuleModel};
-use crate::margins::ContinuousLoop;
+use crate::margins::{ContinuousLoop, TOO_LONG};
 use crate::model::{Fopdt, HalfRule, Ipdt, Keep, TransferFunction, half_rule};
 use crate::rules::adrc::AdrcDesign;
 use crate::rules::ah::{AhMs, AhPid};
@@ -18,6 +20,8 @@ const ADRC_MS: f64 = 1.6;
 const SLOWEST: f64 = 0.05;
 const STEP: f64 = 1.1;
 const STEPS: usize = 90;
+/// Frequencies of all the loops tried from which the search would take many seconds.
+const MOST_POINTS: usize = 2_000_000;
 /// Largest bandwidth in rad per sample: the observer is four times as fast.
 const FASTEST: f64 = 0.2;
 
@@ -101,9 +105,14 @@ impl Job<'_> {
         if !(most > 1.0 && most <= 100.0) {
             return Err(Refusal::OutOfRange { parameter: "ms", value: most, min: 1.0, max: 100.0 });
         }
+        let points = Cell::new(0);
         let within = |omega: f64| {
             let config = config(b0, omega).ok()?;
-            let ms = ContinuousLoop::of_adrc(&self.delayed, &config).ok()?.margins().ok()?.ms;
+            let found = ContinuousLoop::of_adrc(&self.delayed, &config).ok()?.ms();
+            // A faster one is no easier to follow.
+            points.set(if found == Err(TOO_LONG) { usize::MAX } else { points.get() });
+            let (ms, many) = found.ok()?;
+            points.set(points.get().saturating_add(many));
             (ms <= most).then_some(config)
         };
         let mut best = None;
@@ -120,6 +129,12 @@ impl Job<'_> {
                 // The first bandwidths may be too slow for a plant that integrates or is far from the model.
                 None if best.is_none() => {}
                 None => break,
+            }
+            if points.get() > MOST_POINTS {
+                return Err(Refusal::NoSolution {
+                    why: "the dead time is too long against the lags to search for a bandwidth",
+                    help: "use a rule that models the dead time: momi, de-momi, pi-ms",
+                });
             }
             omega *= STEP;
         }

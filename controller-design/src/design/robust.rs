@@ -1,5 +1,7 @@
 //! Keeping a loop with a disturbance estimator within a maximum sensitivity.
 
+use core::cell::Cell;
+
 use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
 use crate::model::TransferFunction;
 use crate::rules::de_momi;
@@ -13,6 +15,8 @@ const STEPS: usize = 60;
 const STEP: f64 = 1.05;
 /// Halvings of the range of `kfd`.
 const HALVINGS: usize = 40;
+/// Frequencies of the first loops from which a hundred of them would take many seconds.
+const MOST_POINTS: usize = 200_000;
 /// The estimator stays worth its place down to this share of its gain.
 const LEAST_SHARE: f64 = 0.3;
 
@@ -33,22 +37,34 @@ pub(super) fn within(
     if !(most > 1.0 && most <= 100.0) {
         return Err(Refusal::OutOfRange { parameter: "ms_max", value: most, min: 1.0, max: 100.0 });
     }
-    let ms = |estimator: &EstimatorConfig| {
+    let points = Cell::new(0);
+    // The larger of the two, or the first one above `enough`.
+    let ms = |estimator: &EstimatorConfig, enough: f64| {
         let loop_ = ContinuousLoop::new(plant, pid).with_estimator(estimator);
-        let sampled = DiscreteLaw::with_compensator(pid, &estimator.to_compensator(0.0), ts)
-            .ok()
-            .and_then(|law| DiscreteLoop::new(plant, law, 0.0).ok());
-        match (loop_.and_then(|loop_| loop_.margins()), sampled.map(|sampled| sampled.margins())) {
-            (Ok(one), Some(Ok(two))) => one.ms.max(two.ms),
-            _ => f64::INFINITY,
+        let Ok((one, many)) = loop_.and_then(|loop_| loop_.ms()) else { return f64::INFINITY };
+        points.set(points.get() + many);
+        if one > enough {
+            return one;
         }
+        let law = DiscreteLaw::with_compensator(pid, &estimator.to_compensator(0.0), ts).ok();
+        let sampled = law.and_then(|law| DiscreteLoop::new(plant, law, 0.0).ok());
+        let Some(Ok((two, many))) = sampled.map(|sampled| sampled.ms()) else { return f64::INFINITY };
+        points.set(points.get() + many);
+        one.max(two)
     };
-    if ms(estimator) <= most {
+    let keeps = |estimator: &EstimatorConfig| ms(estimator, most) <= most;
+    if keeps(estimator) {
         return Ok(());
     }
-    let plain = ms(&EstimatorConfig { kfd: 0.0, ..*estimator });
+    let plain = ms(&EstimatorConfig { kfd: 0.0, ..*estimator }, f64::INFINITY);
     if plain > most {
         return Err(Refusal::Unattainable { what: "ms_max", asked: most, least: plain });
+    }
+    if points.get() > MOST_POINTS {
+        return Err(Refusal::NoSolution {
+            why: "the dead time is too long against ts and the lags to search for a filter that keeps ms_max",
+            help: "choose a longer ts, or give tfd",
+        });
     }
     let first = *estimator;
     let mut tfd = first.tfd;
@@ -59,7 +75,7 @@ pub(super) fn within(
             break;
         }
         let slower = EstimatorConfig { tfd, kfd, ..first };
-        if ms(&slower) <= most {
+        if keeps(&slower) {
             *estimator = slower;
             let text = "raised to keep ms_max";
             warn(warnings, Warning::Value { about: "tfd", value: tfd, text });
@@ -69,7 +85,7 @@ pub(super) fn within(
     let (mut low, mut high) = (0.0, first.kfd);
     for _ in 0..HALVINGS {
         let kfd = 0.5 * (low + high);
-        if ms(&EstimatorConfig { kfd, ..first }) <= most { low = kfd } else { high = kfd }
+        if keeps(&EstimatorConfig { kfd, ..first }) { low = kfd } else { high = kfd }
     }
     *estimator = EstimatorConfig { kfd: low, ..first };
     warn(warnings, Warning::Value { about: "kfd", value: low, text: "cut to keep ms_max" });

@@ -218,6 +218,19 @@ impl ContinuousLoop {
     /// A parameter that is not finite or a negative time; an undamped pole of the plant; an integral action that the
     /// plant cannot pass; a closed loop that is not stable.
     pub fn margins(&self) -> Result<Margins, Refusal> {
+        self.stable()?.margins(&|omega| self.point(omega))
+    }
+
+    /// The largest sensitivity, and the number of points it took; cheaper than all margins.
+    ///
+    /// # Errors
+    /// As for [`margins`](Self::margins).
+    pub(crate) fn ms(&self) -> Result<(f64, usize), Refusal> {
+        let scan = self.stable()?;
+        Ok((scan.ms(&|omega| self.point(omega))?, scan.points.len()))
+    }
+
+    fn stable(&self) -> Result<Scan, Refusal> {
         self.check()?;
         let mut unstable = 0;
         for pole in self.plant.poles() {
@@ -234,7 +247,7 @@ impl ContinuousLoop {
         if scan.unstable_poles(unstable)? != 0 {
             return Err(UNSTABLE);
         }
-        scan.margins(&|omega| self.point(omega))
+        Ok(scan)
     }
 
     pub(super) fn point(&self, omega: f64) -> Point {

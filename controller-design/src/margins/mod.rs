@@ -25,8 +25,10 @@ mod paths;
 mod scan;
 
 pub use continuous::ContinuousLoop;
+pub(crate) use discrete::TOO_MANY_TURNS;
 pub use discrete::{DiscreteLaw, DiscreteLoop, LoopResponse, NoiseGains};
 pub(crate) use paths::{Paths, lead, split_zeros};
+pub(crate) use scan::TOO_LONG;
 
 /// The distances of a stable loop from instability; frequencies in rad/s.
 ///

@@ -21,6 +21,12 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// Most that the characteristic function changes between two samples, relative to its size: a turn of 30 degrees.
 const CHANGE: f64 = 0.5;
 
+/// The refusal of a loop whose dead time turns it too often where it counts.
+pub(crate) const TOO_LONG: Refusal = Refusal::NoSolution {
+    why: "the dead time is too long against the loop's other times to follow all its turns",
+    help: "lower the gains, or raise the filter time constant",
+};
+
 /// A loop at one frequency: `L = gain/rest`, `S = rest/(rest + gain)`, `T = gain/(rest + gain)`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
@@ -157,10 +163,7 @@ impl Scan {
                 }
             }
             if self.points.len() >= 2 * MAX_POINTS {
-                return Err(Refusal::NoSolution {
-                    why: "the dead time is too long against the loop's other times to follow all its turns",
-                    help: "lower the gains, or raise the filter time constant",
-                });
+                return Err(TOO_LONG);
             }
             self.points.push(point);
             waiting.pop();

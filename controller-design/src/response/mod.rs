@@ -200,11 +200,20 @@ impl ContinuousResponse {
         if numbers.iter().all(|x| x.is_finite()) { Ok(indices) } else { Err(unstable()) }
     }
 
-    /// The IAE of a step, or infinity as soon as it is known to be above `limit` or the loop is unstable.
-    pub(crate) fn iae_below(&self, limit: f64) -> f64 {
+    /// The IAE of a step, or infinity as soon as it is known to be above `limit` or the loop is unstable; and the number of
+    /// elements it took.
+    pub(crate) fn iae_below(&self, limit: f64) -> (f64, usize) {
         let r = &self.march.realisation;
         let unit = r.gain.abs() * r.time;
-        self.settled(Load::Step, limit / unit).map_or(f64::INFINITY, |(sums, _)| sums.iae * unit)
+        let mut settling = Settling::new(self.accuracy, limit / unit);
+        let mut elements = 0;
+        let (outcome, _) = self.march.run(Load::Step, false, &mut |e| {
+            elements += 1;
+            settling.visit(e)
+        });
+        let iae = settling.sums.iae;
+        let counts = verdict(outcome).is_ok() && iae <= limit / unit;
+        (if counts { iae * unit } else { f64::INFINITY }, elements)
     }
 
     /// The first extrema of the error, at most `count`, in the order of time.

@@ -1,5 +1,7 @@
 //! The PI with the least integral of the absolute error after a step of the load.
 
+use core::cell::Cell;
+
 use controller_core::PidConfig;
 
 use crate::margins::ContinuousLoop;
@@ -13,6 +15,9 @@ const ACCURACY: f64 = 1e-7;
 const FRAGILE: f64 = 2.0;
 /// Evaluations of one descent at most.
 const MAX_TRIALS: usize = 300;
+/// Elements of all responses at most: a second or two, some hundred times what most plants take. A plant that rings for
+/// thousands of periods has more.
+const MAX_ELEMENTS: usize = 1_000_000;
 
 /// The PI controller with the least IAE after a unit step of the load at the plant input, over an infinite horizon,
 /// found by optimisation on the exact response (Airikka 2021 fits formulas to such optima; they are off by up to 16 %
@@ -84,6 +89,7 @@ impl PiIae {
     /// * A plant that is never at its limit under proportional control, such as one or two lags without dead time:
     ///   the IAE can be made as small as one likes.
     /// * A plant that no PI controller near those places makes stable.
+    /// * A plant that rings for so long, thousands of periods, that the search would take many seconds.
     /// * A plant whose loop cannot be computed: see [`ContinuousResponse::new`].
     pub fn new(plant: &TransferFunction) -> Result<Self, Refusal> {
         // Says what is wrong with the plant itself, before any search.
@@ -95,14 +101,17 @@ impl PiIae {
             why: "a PI controller can make the IAE of this plant as small as one likes",
             help: "give the plant its dead time or its fast lags, or ask for a sensitivity peak instead",
         })?;
-        let search = Search { plant, limit };
-        let mut best = search.start().ok_or(Refusal::NoSolution {
+        let search = Search { plant, limit, elements: Cell::new(0) };
+        let start = search.start();
+        search.within_budget()?;
+        let mut best = start.ok_or(Refusal::NoSolution {
             why: "no PI controller was found that makes this plant stable",
             help: "use a PID, or a rule for this kind of plant",
         })?;
         // The second descent shows whether the first one got stuck.
         for (size, end) in [(0.12, 4e-3), (0.02, 2e-4)] {
             best = search.descend(best, size, end);
+            search.within_budget()?;
         }
         let pid = search.pid(best.place);
         let ms = ContinuousLoop::new(plant, &pid).margins()?.ms;
@@ -180,9 +189,21 @@ struct Trial {
 struct Search<'a> {
     plant: &'a TransferFunction,
     limit: Limit,
+    /// Elements of responses so far.
+    elements: Cell<usize>,
 }
 
 impl Search<'_> {
+    fn within_budget(&self) -> Result<(), Refusal> {
+        if self.elements.get() < MAX_ELEMENTS {
+            return Ok(());
+        }
+        Err(Refusal::NoSolution {
+            why: "the plant rings for too long to search for the least IAE",
+            help: "give the resonance more damping, or ask for a sensitivity peak instead: pi-ms",
+        })
+    }
+
     fn pid(&self, place: Place) -> PidConfig {
         let kp = place[0] * self.limit.gain;
         let ki = libm::exp(place[1]) * self.limit.gain * self.limit.omega;
@@ -191,9 +212,17 @@ impl Search<'_> {
 
     /// The IAE if it is below `limit`, infinity otherwise.
     fn trial(&self, place: Place, limit: f64) -> Trial {
+        // Whoever asked refuses then.
+        if self.elements.get() >= MAX_ELEMENTS {
+            return Trial { place, iae: f64::INFINITY };
+        }
         let response = ContinuousResponse::with_accuracy(self.plant, &self.pid(place), None, ACCURACY);
         let iae = match response {
-            Ok(response) if place[0] >= 0.0 => response.iae_below(limit),
+            Ok(response) if place[0] >= 0.0 => {
+                let (iae, elements) = response.iae_below(limit);
+                self.elements.set(self.elements.get() + elements);
+                iae
+            }
             _ => f64::INFINITY,
         };
         Trial { place, iae }

@@ -87,7 +87,13 @@ fn near(held: &DiscreteLoop, theta: f64) -> Option<f64> {
 
 /// `found`, if the loop is stable just before it; else the dead time below it at which the loop stops being stable.
 fn confirmed(held: &DiscreteLoop, found: (f64, Option<f64>)) -> (f64, Option<f64>) {
-    let stable = |delay: f64| held.later(delay).is_ok_and(|later| later.unstable_poles() == 0);
+    let stable = |delay: f64| {
+        // What cannot be followed is not refuted.
+        held.later(delay).is_ok_and(|later| {
+            let sweep = Sweep::of(&later);
+            sweep.is_cut || sweep.unstable_poles() == 0
+        })
+    };
     if stable(found.0 * 0.998) {
         return found;
     }

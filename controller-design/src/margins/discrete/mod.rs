@@ -18,4 +18,5 @@ mod sweep;
 
 pub use law::DiscreteLaw;
 pub use noise::NoiseGains;
+pub(crate) use sampled::TOO_MANY_TURNS;
 pub use sampled::{DiscreteLoop, LoopResponse};

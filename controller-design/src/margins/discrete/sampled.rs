@@ -84,6 +84,12 @@ impl LoopResponse {
     }
 }
 
+/// The refusal of a loop whose delay turns too often below the Nyquist frequency.
+pub(crate) const TOO_MANY_TURNS: Refusal = Refusal::NoSolution {
+    why: "the dead time is too many samples long to follow all its turns",
+    help: "choose a longer ts: a hundredth of the dead time is short enough for any loop",
+};
+
 impl DiscreteLoop {
     /// The loop of `plant` and `law`; `latency` \[s\] from reading `y` to acting `u`. The law's compensator keeps the
     /// latency it was configured with.
@@ -153,20 +159,50 @@ impl DiscreteLoop {
     /// Cost: some ms; more with delays of many thousand samples.
     ///
     /// # Errors
-    /// An unstable loop has no margins.
+    /// An unstable loop has no margins; nor has one whose delay is too many samples long to follow all its turns, some
+    /// 25 000 when the loop gain does not fall.
     pub fn margins(&self) -> Result<Margins, Refusal> {
+        Ok(self.margins_of(&self.stable()?))
+    }
+
+    /// [`margins`](Self::margins) and [`noise`](Self::noise) at the price of one.
+    ///
+    /// # Errors
+    /// As for [`margins`](Self::margins).
+    pub(crate) fn margins_and_noise(&self) -> Result<(Margins, NoiseGains), Refusal> {
+        let sweep = self.stable()?;
+        Ok((self.margins_of(&sweep), noise_gains(self, &sweep)))
+    }
+
+    /// The largest sensitivity, and the number of points it took.
+    ///
+    /// # Errors
+    /// As for [`margins`](Self::margins).
+    pub(crate) fn ms(&self) -> Result<(f64, usize), Refusal> {
+        let sweep = self.stable()?;
+        Ok((sweep.peak(self, |p| p.sensitivity().abs()).1, sweep.points.len()))
+    }
+
+    fn stable(&self) -> Result<Sweep, Refusal> {
         let sweep = Sweep::of(self);
+        if sweep.is_cut {
+            return Err(TOO_MANY_TURNS);
+        }
         if sweep.unstable_poles() > 0 {
             return Err(Refusal::NoSolution {
                 why: "the sampled loop is unstable",
                 help: "lower the gains, sample faster, or check the sign of the plant's gain",
             });
         }
-        let mut margins = extremes(self, &sweep);
-        let (delay_margin, omega_delay) = delay_margin(self, &sweep);
+        Ok(sweep)
+    }
+
+    fn margins_of(&self, sweep: &Sweep) -> Margins {
+        let mut margins = extremes(self, sweep);
+        let (delay_margin, omega_delay) = delay_margin(self, sweep);
         margins.delay_margin = delay_margin;
         margins.omega_delay = omega_delay;
-        Ok(margins)
+        margins
     }
 
     /// The gains from measurement noise to the output.

@@ -9,9 +9,9 @@ use crate::model::Complex;
 
 /// Points in each decade before anything is refined.
 const PER_DECADE: f64 = 60.0;
-/// Most points that long delays get, and most that any loop gets.
-const MOST_TURNS: usize = 400_000;
-const MOST: usize = 1_000_000;
+/// Most points that long delays get, and most that any loop gets: what has more is not followed, and has no margins.
+const MOST_TURNS: usize = 200_000;
+const MOST: usize = 400_000;
 /// Largest turn of the characteristic function, and largest relative change of a response, between neighbours \[rad\].
 const TURN: f64 = 0.4;
 /// Largest turn of a delay between neighbours \[rad\], where the loop gain is more than `QUIET`.
@@ -24,6 +24,8 @@ const NEARLY_PI: f64 = PI * (1.0 - 1e-7);
 pub(super) struct Sweep {
     pub(super) points: Vec<LoopResponse>,
     directions: Vec<Complex>,
+    /// Whether there was more to follow than points for it.
+    pub(super) is_cut: bool,
 }
 
 impl Sweep {
@@ -55,7 +57,7 @@ impl Sweep {
         angles.sort_by(f64::total_cmp);
         angles.dedup();
 
-        let mut sweep = Self { points: Vec::new(), directions: Vec::new() };
+        let mut sweep = Self { points: Vec::new(), directions: Vec::new(), is_cut: false };
         let mut turns = 0;
         let mut last: Option<LoopResponse> = None;
         for theta in angles {
@@ -63,10 +65,14 @@ impl Sweep {
             if let Some(before) = last {
                 let loud = loudness(&before).max(loudness(&point)) > QUIET;
                 let parts = libm::ceil((theta - before.theta) * samples / DELAY_TURN);
-                if loud && parts > 1.0 && turns < MOST_TURNS {
+                if loud && parts > 1.0 {
                     let step = (theta - before.theta) / parts;
                     let mut k = 1.0;
-                    while k < parts && turns < MOST_TURNS {
+                    while k < parts {
+                        if turns >= MOST_TURNS || sweep.is_cut {
+                            sweep.is_cut = true;
+                            return sweep;
+                        }
                         sweep.reach(held, held.at(before.theta + k * step));
                         k += 1.0;
                         turns += 1;
@@ -74,6 +80,9 @@ impl Sweep {
                 }
             }
             sweep.reach(held, point);
+            if sweep.is_cut {
+                return sweep;
+            }
             last = Some(point);
         }
         sweep
@@ -87,7 +96,11 @@ impl Sweep {
             if let (Some(last), Some(&from)) = (self.points.last(), self.directions.last()) {
                 let turned = angle(direction, from).abs() > TURN || moved(last, &next);
                 let wide = next.theta - last.theta > 1e-9 * last.theta;
-                if turned && wide && waiting.len() < 48 && self.points.len() < MOST {
+                if turned && wide && waiting.len() < 48 {
+                    if self.points.len() >= MOST {
+                        self.is_cut = true;
+                        return;
+                    }
                     waiting.push(held.at(0.5 * (last.theta + next.theta)));
                     continue;
                 }
@@ -100,6 +113,9 @@ impl Sweep {
 
     /// Zeros of the characteristic function outside the unit circle or on it: minus the turns of its values there.
     pub(super) fn unstable_poles(&self) -> usize {
+        if self.is_cut {
+            return 1;
+        }
         let turned: f64 =
             self.directions.iter().zip(self.directions.iter().skip(1)).map(|(&a, &b)| angle(b, a)).sum();
         if !turned.is_finite() {
