@@ -2,13 +2,11 @@
 
 use super::drawing::pixel;
 use super::experiment::{Picture, Signals, draw};
-use super::standalone::STYLE;
+use super::legend::{area, line};
+use super::page::{document, notes, scroll};
 use crate::output::table::format_number;
 use controller_design::assessment::{Acceptance, Assessment, Change, Features, Verdict};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-
-const PAGE_STYLE: &str = include_str!("style/page.css");
-const OWN_STYLE: &str = include_str!("style/experiment.css");
+use maud::{Markup, html};
 
 /// An experiment with what came of it.
 #[derive(Debug, Clone, Copy)]
@@ -109,46 +107,23 @@ pub fn advice(assessment: &Assessment) -> Option<String> {
 pub fn assessment_page(experiment: &Experiment<'_>, command: &str) -> String {
     let assessment = experiment.assessment;
     let heading = format!("{}: {}", experiment.name, assessment.verdict.name());
-    let text = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (heading) }
-                style { (PreEscaped(STYLE)) (PreEscaped(PAGE_STYLE)) (PreEscaped(OWN_STYLE)) }
+    let content = html! {
+        main {
+            (verdict(assessment))
+            (notes(&assessment.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()))
+            @if let Some(marks) = &assessment.marks {
+                h2 id="response" { "Response" }
+                (picture(&draw(&experiment.signals, marks, &experiment.acceptance), experiment))
             }
-            body {
-                header {
-                    p class="kind" { "Load-response experiment" }
-                    h1 { (heading) }
-                }
-                main {
-                    (verdict(assessment))
-                    (warnings(assessment))
-                    @if let Some(marks) = &assessment.marks {
-                        h2 id="response" { "Response" }
-                        (picture(&draw(&experiment.signals, marks, &experiment.acceptance), experiment))
-                    }
-                    @if let Some(features) = &assessment.features {
-                        h2 id="features" { "Features" }
-                        (table(features, &experiment.acceptance))
-                    }
-                    h2 id="about" { "How to read it" }
-                    (about())
-                }
-                footer {
-                    h2 id="command" { "How this page was made" }
-                    div class="scroll" role="region" tabindex="0" aria-labelledby="command" {
-                        pre { code { (command) } }
-                    }
-                    p { "controller-sim " (env!("CARGO_PKG_VERSION")) }
-                }
+            @if let Some(features) = &assessment.features {
+                h2 id="features" { "Features" }
+                (scroll("features", &table(features, &experiment.acceptance)))
             }
+            h2 id="about" { "How to read it" }
+            (about())
         }
     };
-    text.into_string()
+    document("Load-response experiment", &heading, &content, command)
 }
 
 fn verdict(assessment: &Assessment) -> Markup {
@@ -161,37 +136,19 @@ fn verdict(assessment: &Assessment) -> Markup {
     }
 }
 
-fn warnings(assessment: &Assessment) -> Markup {
-    html! {
-        @if !assessment.warnings.is_empty() {
-            div class="notes" role="note" aria-label="Warnings" {
-                p { strong { "Before you trust the figures" } }
-                ul { @for warning in &assessment.warnings { li { (warning) } } }
-            }
-        }
-    }
-}
-
 fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
-    let marked = experiment.assessment.marks.as_ref().is_some_and(|marks| marks.peak.is_some());
-    let line = |class: &str| {
-        html! {
-            svg width="30" height="12" aria-hidden="true" { line class={ "l " (class) } x1="0" x2="30" y1="6" y2="6" {} }
-        }
-    };
-    let block = |class: &str| {
-        html! {
-            svg width="30" height="12" aria-hidden="true" { rect class=(class) x="4" width="22" y="0.5" height="11" {} }
-        }
-    };
+    let marks = experiment.assessment.marks.as_ref();
+    let marked = marks.is_some_and(|marks| marks.peak.is_some());
     html! {
         figure class="plot" id="figure-1" {
             ul class="legend" {
-                li { (line("faint c0")) span { "measurement as recorded (faint)" } }
-                @if marked { li { (line("c0")) span { "smoothed" } } }
-                @if !experiment.signals.setpoint.is_empty() { li { (line("ref")) span { "set-point" } } }
-                li { (block("window")) span { "output held by hand" } }
-                @if marked { li { (block("target")) span { "where the dip belongs" } } }
+                (line("faint c0", "measurement as recorded (faint)"))
+                @if marked { (line("c0", "smoothed")) }
+                @if !experiment.signals.setpoint.is_empty() { (line("ref", "set-point")) }
+                (line("level", "mean before the step"))
+                (area("window", "output held by hand"))
+                @if marked { (area("target", "where the dip belongs")) }
+                @if marked { (line("bound", "highest P3")) }
             }
             svg class="canvas" height=(pixel(picture.height)) role="img" aria-labelledby="figure-1-title figure-1-desc" {
                 title id="figure-1-title" {
@@ -202,7 +159,12 @@ fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
                 (picture.content)
             }
             figcaption {
-                "The dash-dotted line is the mean before the step."
+                @if let Some(marks) = marks {
+                    "By hand the output went from " (format_number(marks.inputs.0)) " to " (format_number(marks.inputs.1))
+                    " at " (format_number(marks.step)) " s"
+                    @if let Some(auto) = marks.auto { "; back in automatic at " (format_number(auto)) " s" }
+                    "."
+                }
                 @if marked {
                     " Of a near-optimal loop the dip lies in the box, and the third peak P3 is at most "
                     (format!("{:.2}", experiment.acceptance.r3)) " first peaks high."
@@ -232,28 +194,26 @@ fn described(experiment: &Experiment<'_>) -> String {
 
 fn table(features: &Features, acceptance: &Acceptance) -> Markup {
     html! {
-        div class="scroll" role="region" tabindex="0" aria-labelledby="features" {
-            table class="features" {
-                thead {
-                    tr {
-                        th scope="col" class="text" { "feature" }
-                        th scope="col" { "value" }
-                        th scope="col" class="text" { "near-optimal" }
-                        th scope="col" class="text" { "in its range" }
-                        th scope="col" class="text" { "what it is" }
-                    }
+        table class="features" {
+            thead {
+                tr {
+                    th scope="col" class="text" { "feature" }
+                    th scope="col" { "value" }
+                    th scope="col" class="text" { "near-optimal" }
+                    th scope="col" class="text" { "in its range" }
+                    th scope="col" class="text" { "what it is" }
                 }
-                tbody {
-                    @for line in lines(features, acceptance) {
-                        tr {
-                            th scope="row" { (line.name) }
-                            td { (line.value) }
-                            td class="text" { (line.range) }
-                            td class="text" {
-                                @match line.good { Some(true) => "yes", Some(false) => strong { "no" }, None => "" }
-                            }
-                            td class="text" { (line.about) }
+            }
+            tbody {
+                @for line in lines(features, acceptance) {
+                    tr {
+                        th scope="row" { (line.name) }
+                        td { (line.value) }
+                        td class="text" { (line.range) }
+                        td class="text" {
+                            @match line.good { Some(true) => "yes", Some(false) => strong { "no" }, None => "" }
                         }
+                        td class="text" { (line.about) }
                     }
                 }
             }

@@ -104,22 +104,10 @@ fn draw_panel(panel: &Panel<'_>, loops: &[Loop<'_>], time: (f64, f64), axis: &Ax
     let values = Axis::of_values(panel.range(), most.max(2));
     let share = |value: f64| values.share(value);
     let bottom = top + panel.height;
-    let place = |share: f64| pixel(bottom - share * panel.height);
     let Some(record) = loops.first().map(|l| l.record) else { return html! {} };
     let plane = Plane { record, time, share: &share, size: (COLUMNS, panel.height) };
     html! {
-        g class="grid" {
-            @for tick in &values.ticks {
-                line x1="0" x2="100%" y1=(place(tick.share)) y2=(place(tick.share)) {}
-            }
-            @for tick in &axis.ticks {
-                line x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(top)) y2=(pixel(bottom)) {}
-            }
-        }
-        text class="title" x=(pixel(-LEFT)) y=(pixel(top - 9.0)) { (panel.title) (values.unit(&panel.unit)) }
-        @for tick in &values.ticks {
-            text class="n" x="-7" y=(pixel(bottom - tick.share * panel.height + 4.0)) { (tick.label) }
-        }
+        (grid(&values, axis, (top, panel.height), panel.title, &panel.unit))
         svg class="p" y=(pixel(top)) width="100%" height=(pixel(panel.height))
             viewBox={ "0 0 " (COLUMNS) " " (panel.height) } preserveAspectRatio="none" {
             @for level in &panel.levels { (draw_level(level, &plane)) }
@@ -130,6 +118,26 @@ fn draw_panel(panel: &Panel<'_>, loops: &[Loop<'_>], time: (f64, f64), axis: &Ax
             }
         }
         line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
+    }
+}
+
+/// The lines of both axes, the title and the numbers of the upright one, in a panel given by its top and its height.
+pub(super) fn grid(values: &Axis, axis: &Axis, (top, height): (f64, f64), title: &str, unit: &str) -> Markup {
+    let bottom = top + height;
+    let place = |share: f64| pixel(bottom - share * height);
+    html! {
+        g class="grid" {
+            @for tick in &values.ticks {
+                line x1="0" x2="100%" y1=(place(tick.share)) y2=(place(tick.share)) {}
+            }
+            @for tick in &axis.ticks {
+                line x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(top)) y2=(pixel(bottom)) {}
+            }
+        }
+        text class="title" x=(pixel(-LEFT)) y=(pixel(top - 9.0)) { (title) (values.unit(unit)) }
+        @for tick in &values.ticks {
+            text class="n" x="-7" y=(pixel(bottom - tick.share * height + 4.0)) { (tick.label) }
+        }
     }
 }
 
@@ -170,6 +178,11 @@ fn draw_marks(marks: &[Mark], bottom: f64) -> Markup {
 }
 
 pub(super) fn time_axis(axis: &Axis, y: f64) -> Markup {
+    below(axis, y, "time t", "s")
+}
+
+/// The axis below the panels: its ticks, their numbers, what it is.
+pub(super) fn below(axis: &Axis, y: f64, name: &str, unit: &str) -> Markup {
     html! {
         line class="axis" x1="0" x2="100%" y1=(pixel(y)) y2=(pixel(y)) {}
         @for tick in &axis.ticks {
@@ -181,7 +194,7 @@ pub(super) fn time_axis(axis: &Axis, y: f64) -> Markup {
         @for share in &axis.between {
             line class="axis" x1=(percent(*share)) x2=(percent(*share)) y1=(pixel(y)) y2=(pixel(y + 2.5)) {}
         }
-        text class="title t" x="50%" y=(pixel(y + 31.0)) { "time t" (axis.unit("s")) }
+        text class="title t" x="50%" y=(pixel(y + 31.0)) { (name) (axis.unit(unit)) }
     }
 }
 

@@ -1,21 +1,23 @@
 //! The picture of a load-response experiment: the response with its features, the output below it.
 
-use super::drawing::{LEFT, percent, pixel, time_axis};
-use super::path::{Pen, hundredths};
+use super::drawing::{percent, pixel, time_axis};
+use super::frame::{Frame, Line, TITLE, range};
+use super::path::Between;
 use super::scale::Axis;
 use super::words;
+use crate::output::table::format_number;
 use controller_design::assessment::{Acceptance, Marks, Place};
 use maud::{Markup, html};
 
-/// Columns that a panel is divided into, whatever its width.
-const COLUMNS: f64 = 1000.0;
-/// Height of the panels and of a panel's title \[px\].
+/// Height of the panels and of a line of times between them \[px\].
 const RESPONSE: f64 = 280.0;
 const OUTPUT: f64 = 130.0;
-const TITLE: f64 = 27.0;
+const SPAN: f64 = 17.0;
 /// What is shown before and after the step, in times of the first peak.
 const BEFORE: f64 = 1.0;
 const AFTER: f64 = 6.0;
+/// Room for the name of a mark, as a share of the range.
+const ROOM: f64 = 0.09;
 
 /// The signals of the experiment, as they were recorded.
 #[derive(Debug, Clone, Copy)]
@@ -55,29 +57,45 @@ pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance
     let input = pick(signals.t, signals.input);
     let smoothed: Vec<(f64, f64)> =
         marks.smoothed.iter().map(|place| (place.t, place.y)).filter(|(t, _)| seen(*t)).collect();
-    let extra = target.iter().flat_map(|target| [(0.0, target.y.0), (0.0, target.y.1)]);
-    let values: Vec<(f64, f64)> = output.iter().chain(&setpoint).copied().chain(extra).collect();
+    let extra = target.iter().flat_map(|target| [target.y.0, target.y.1, target.third]);
+    let values = range(output.iter().chain(&setpoint).map(|point| point.1).chain(extra));
+    let room = |(lo, hi): (f64, f64)| (lo - ROOM * (hi - lo), hi + ROOM * (hi - lo));
+    let values = if marks.peak.is_some() { values.map(room) } else { values };
 
-    let top = TITLE;
-    let response = Frame::new(time, &axis, range(&values), top, RESPONSE);
-    let below = Frame::new(time, &axis, range(&input), top + RESPONSE + TITLE, OUTPUT);
-    let end = below.top + OUTPUT + 6.0;
+    let response = Frame::new(&axis, values, TITLE, RESPONSE);
+    let spans: Vec<(&str, Place)> = [("t1", marks.peak), ("t_dip", marks.dip)]
+        .into_iter()
+        .filter_map(|(name, p)| Some((name, p?)))
+        .collect();
+    let gap = spans.len() as f64 * SPAN;
+    let below = Frame::new(&axis, range(input.iter().map(|p| p.1)), response.bottom() + gap + TITLE, OUTPUT);
+    let end = below.bottom() + 6.0;
     let title = |what: &str, name: &str| match words::cut(name.trim(), 30) {
         name if name.is_empty() || name.len() <= 1 => what.to_owned(),
         name => format!("{what}: {name}"),
     };
+    let line = |class, points, between| Line { class, points, between };
     let content = html! {
         (response.grid(&title("Measurement y, set-point r", signals.names.0)))
-        (response.manual(marks))
-        @if let Some(target) = &target { (response.target(target)) }
-        (response.lines(&[("faint c0", &output, false), ("ref", &setpoint, true), ("c0", &smoothed, false)]))
-        (response.baseline(marks))
+        (manual(&response, marks, time.1))
+        @if let Some(target) = &target { (near_optimal(&response, target)) }
+        (response.lines(&[
+            line("faint c0", &output, Between::Moves),
+            line("ref", &setpoint, Between::Held),
+            line("c0", &smoothed, Between::Moves),
+        ]))
+        (response.level("level", time, marks.baseline, "mean before the step"))
         @for (name, place) in [("P1", marks.peak), ("dip", marks.dip), ("P3", marks.third)] {
-            @if let Some(place) = place.filter(|place| seen(place.t)) { (response.mark(name, place)) }
+            @if let Some(place) = place.filter(|place| seen(place.t)) {
+                (mark(&response, name, place, outwards(marks, place)))
+            }
+        }
+        @for (row, (name, place)) in spans.iter().enumerate() {
+            (span(&response, name, marks.step, *place, row))
         }
         (below.grid(&title("Controller output u", signals.names.1)))
-        (below.manual(marks))
-        (below.lines(&[("c0", &input, true)]))
+        (manual(&below, marks, time.1))
+        (below.lines(&[line("c0", &input, Between::Held)]))
         (time_axis(&axis, end))
     };
     Picture { content, height: end + 34.0, time }
@@ -97,6 +115,8 @@ fn shown(signals: &Signals<'_>, marks: &Marks) -> (f64, f64) {
 struct Target {
     t: (f64, f64),
     y: (f64, f64),
+    /// The highest that the third peak is.
+    third: f64,
 }
 
 fn target(marks: &Marks, acceptance: &Acceptance) -> Option<Target> {
@@ -106,148 +126,62 @@ fn target(marks: &Marks, acceptance: &Acceptance) -> Option<Target> {
     Some(Target {
         t: (t(acceptance.t_ratio.0), t(acceptance.t_ratio.1)),
         y: (y(acceptance.dip.0), y(acceptance.dip.1)),
+        third: y(acceptance.r3),
     })
 }
 
-fn range(points: &[(f64, f64)]) -> Option<(f64, f64)> {
-    let join = |a: Option<(f64, f64)>, y: f64| Some(a.map_or((y, y), |(lo, hi)| (lo.min(y), hi.max(y))));
-    points.iter().map(|point| point.1).fold(None, join)
+/// Whether the name of a mark belongs above it: outside of the curve.
+fn outwards(marks: &Marks, place: Place) -> bool {
+    let rises = marks.peak.is_none_or(|peak| peak.y >= marks.baseline);
+    let is_dip = marks.dip.is_some_and(|dip| dip.t == place.t);
+    rises != is_dip
 }
 
-/// Class, points, whether the value is held to the next point.
-type Line<'a> = (&'a str, &'a [(f64, f64)], bool);
-
-/// A panel: two axes and where things are between them.
-struct Frame<'a> {
-    time: (f64, f64),
-    axis: &'a Axis,
-    values: Axis,
-    top: f64,
-    height: f64,
+/// The time in manual, or at least the step.
+fn manual(frame: &Frame<'_>, marks: &Marks, end: f64) -> Markup {
+    let x = percent(frame.share(marks.step));
+    html! {
+        (frame.window("window", (marks.step, marks.auto.unwrap_or(end)), "output held by hand"))
+        g class="events" { line x1=(x) x2=(x) y1=(pixel(frame.top)) y2=(pixel(frame.bottom())) {} }
+    }
 }
 
-impl<'a> Frame<'a> {
-    fn new(time: (f64, f64), axis: &'a Axis, range: Option<(f64, f64)>, top: f64, height: f64) -> Self {
-        let values = Axis::of_values(range, ((height / 33.0) as usize).max(2));
-        Self { time, axis, values, top, height }
+/// Where the dip of a near-optimal loop is, and how high its third peak is at most.
+fn near_optimal(frame: &Frame<'_>, target: &Target) -> Markup {
+    html! {
+        (frame.area("target", target.t, target.y, "where the dip of a near-optimal loop is"))
+        (frame.level("bound", (target.t.1, f64::MAX), target.third, "highest third peak of a near-optimal loop"))
     }
+}
 
-    /// The place of a time, as a share of the width.
-    fn share(&self, t: f64) -> f64 {
-        ((t - self.time.0) / (self.time.1 - self.time.0)).clamp(0.0, 1.0)
+/// A feature: a circle on the response, its name outside of it, a hairline down to the times.
+fn mark(frame: &Frame<'_>, name: &str, place: Place, above: bool) -> Markup {
+    let (x, y) = (percent(frame.share(place.t)), frame.place(place.y));
+    html! {
+        g class="events" { line x1=(x) x2=(x) y1=(pixel(y)) y2=(pixel(frame.bottom())) {} }
+        circle class="point c1" cx=(x) cy=(pixel(y)) r="4.5" { title { (name) } }
+        text class="t feature" x=(x) y=(pixel(if above { y - 9.0 } else { y + 18.0 })) { (name) }
     }
+}
 
-    /// The place of a value \[px\].
-    fn place(&self, y: f64) -> f64 {
-        self.top + (1.0 - self.values.share(y).clamp(0.0, 1.0)) * self.height
-    }
-
-    fn grid(&self, title: &str) -> Markup {
-        let bottom = self.top + self.height;
-        let place = |share: f64| bottom - share * self.height;
-        html! {
-            g class="grid" {
-                @for tick in &self.values.ticks {
-                    line x1="0" x2="100%" y1=(pixel(place(tick.share))) y2=(pixel(place(tick.share))) {}
-                }
-                @for tick in &self.axis.ticks {
-                    line x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(self.top)) y2=(pixel(bottom)) {}
-                }
-            }
-            text class="title" x=(pixel(-LEFT)) y=(pixel(self.top - 9.0)) { (title) (self.values.unit("")) }
-            @for tick in &self.values.ticks {
-                text class="n" x="-7" y=(pixel(place(tick.share) + 4.0)) { (tick.label) }
-            }
-            line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
+/// A time from the step to a feature, below the panel.
+fn span(frame: &Frame<'_>, name: &str, step: f64, place: Place, row: usize) -> Markup {
+    let y = frame.bottom() + SPAN * (row as f64 + 0.6);
+    let (from, to) = (frame.share(step), frame.share(place.t));
+    let ends = to > 0.6;
+    let tick = |share: f64| {
+        html! { line class="span" x1=(percent(share)) x2=(percent(share)) y1=(pixel(y - 4.0)) y2=(pixel(y + 4.0)) {} }
+    };
+    html! {
+        g class="ref" {
+            line class="span" x1=(percent(from)) x2=(percent(to)) y1=(pixel(y)) y2=(pixel(y)) {}
+            (tick(from))
+            (tick(to))
         }
-    }
-
-    /// Lines over one another.
-    fn lines(&self, list: &[Line<'_>]) -> Markup {
-        html! {
-            svg class="p" y=(pixel(self.top)) width="100%" height=(pixel(self.height))
-                viewBox={ "0 0 " (COLUMNS) " " (self.height) } preserveAspectRatio="none" {
-                @for (class, points, held) in list {
-                    path class={ "l " (class) } d=(self.path(points, *held)) {}
-                }
+        svg class="p" x=(percent(to)) y=(pixel(y)) {
+            text class={ "feature" @if ends { " n" } } x=(if ends { "-6" } else { "6" }) y="4" {
+                (name) " = " (format_number(place.t - step)) " s"
             }
-        }
-    }
-
-    /// Of many points in a column those that reach farthest stay.
-    fn path(&self, points: &[(f64, f64)], held: bool) -> String {
-        let mut pen = Pen::default();
-        let column = |t: f64| (self.share(t) * COLUMNS) as usize;
-        let mut rest = points;
-        while let Some(first) = rest.first() {
-            let count = rest.iter().take_while(|point| column(point.0) == column(first.0)).count();
-            let (here, later) = rest.split_at(count);
-            if count <= 4 {
-                here.iter().for_each(|point| self.step(&mut pen, *point, held));
-            } else {
-                let by = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-                let ends = [here.iter().min_by(by), here.iter().max_by(by)];
-                let mut kept: Vec<(f64, f64)> =
-                    [here.first(), here.last()].into_iter().chain(ends).flatten().copied().collect();
-                kept.sort_by(|a, b| a.0.total_cmp(&b.0));
-                kept.iter().for_each(|point| self.step(&mut pen, *point, held));
-            }
-            rest = later;
-        }
-        pen.finish()
-    }
-
-    fn step(&self, pen: &mut Pen, (t, y): (f64, f64), held: bool) {
-        let x = hundredths(self.share(t) * COLUMNS);
-        if held {
-            pen.across(x);
-        }
-        pen.to(x, hundredths(self.place(y) - self.top));
-    }
-
-    fn area(&self, class: &str, t: (f64, f64), y: (f64, f64), title: &str) -> Markup {
-        let (left, right) = (self.share(t.0), self.share(t.1));
-        let (a, b) = (self.place(y.0), self.place(y.1));
-        html! {
-            rect class=(class) x=(percent(left)) width=(percent(right - left)) y=(pixel(a.min(b)))
-                height=(pixel((a - b).abs())) { title { (title) } }
-        }
-    }
-
-    /// The time in manual, or at least the step.
-    fn manual(&self, marks: &Marks) -> Markup {
-        let (top, bottom) = (self.top, self.top + self.height);
-        let x = percent(self.share(marks.step));
-        let to = marks.auto.unwrap_or(self.time.1);
-        html! {
-            @let (left, right) = (self.share(marks.step), self.share(to));
-            rect class="window" x=(percent(left)) width=(percent(right - left)) y=(pixel(top)) height=(pixel(bottom - top)) {
-                title { "output held by hand" }
-            }
-            g class="events" { line x1=(x) x2=(x) y1=(pixel(top)) y2=(pixel(bottom)) {} }
-        }
-    }
-
-    fn target(&self, target: &Target) -> Markup {
-        self.area("target", target.t, target.y, "where the dip of a near-optimal loop is")
-    }
-
-    fn baseline(&self, marks: &Marks) -> Markup {
-        let y = pixel(self.place(marks.baseline));
-        html! { line class="level" x1="0" x2="100%" y1=(y) y2=(y) { title { "mean before the step" } } }
-    }
-
-    /// A feature: a circle on the response, its name beside it, a hairline down to the time axis.
-    fn mark(&self, name: &str, place: Place) -> Markup {
-        let (x, y) = (percent(self.share(place.t)), self.place(place.y));
-        // Below the circle where there is no room above it.
-        let label = if y < self.top + 20.0 { y + 18.0 } else { y - 9.0 };
-        html! {
-            g class="events" {
-                line x1=(x) x2=(x) y1=(pixel(y)) y2=(pixel(self.top + self.height)) {}
-            }
-            circle class="point c1" cx=(x) cy=(pixel(y)) r="4.5" { title { (name) } }
-            svg class="p" x=(x) { text class="feature" x="8" y=(pixel(label)) { (name) } }
         }
     }
 }

@@ -37,3 +37,23 @@ pub(super) fn entries(scenario: &Scenario, loops: &[Loop<'_>]) -> Vec<Entry> {
 pub(super) fn sample(entry: &Entry, y: &str) -> Markup {
     html! { line class={ "l " (look(entry.look)) } x1="0" x2="30" y1=(y) y2=(y) {} }
 }
+
+/// What a line of these classes is, for a legend.
+pub(super) fn line(class: &str, text: &str) -> Markup {
+    html! {
+        li {
+            svg width="30" height="12" aria-hidden="true" { line class={ "l " (class) } x1="0" x2="30" y1="6" y2="6" {} }
+            span { (text) }
+        }
+    }
+}
+
+/// What an area of this class is.
+pub(super) fn area(class: &str, text: &str) -> Markup {
+    html! {
+        li {
+            svg width="30" height="12" aria-hidden="true" { rect class=(class) x="4" width="22" y="0.5" height="11" {} }
+            span { (text) }
+        }
+    }
+}

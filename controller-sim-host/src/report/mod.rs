@@ -11,6 +11,7 @@ mod chapter;
 mod describe;
 mod drawing;
 mod experiment;
+mod frame;
 mod identification;
 mod legend;
 mod marks;

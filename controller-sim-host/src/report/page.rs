@@ -7,6 +7,8 @@ use super::standalone::STYLE;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const PAGE_STYLE: &str = include_str!("style/page.css");
+/// Of what is marked in the pictures of records and of responses over frequency.
+const DIAGRAM_STYLE: &str = include_str!("style/diagram.css");
 
 /// The page as text.
 pub(super) fn page(chapters: &[Chapter<'_>], command: &str) -> String {
@@ -42,7 +44,7 @@ pub(super) fn document(kind: &str, heading: &str, content: &Markup, command: &st
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (heading) }
-                style { (PreEscaped(STYLE)) (PreEscaped(PAGE_STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(PAGE_STYLE)) (PreEscaped(DIAGRAM_STYLE)) }
             }
             body {
                 header {
@@ -52,15 +54,27 @@ pub(super) fn document(kind: &str, heading: &str, content: &Markup, command: &st
                 (content)
                 footer {
                     h2 id="command" { "How this page was made" }
-                    div class="scroll" role="region" tabindex="0" aria-labelledby="command" {
-                        pre { code { (command) } }
-                    }
+                    (scroll("command", &html! { pre { code { (command) } } }))
                     p { "controller-sim " (env!("CARGO_PKG_VERSION")) }
                 }
             }
         }
     };
     text.into_string()
+}
+
+/// What may be wider than the page, named by the element `heading`, or by several.
+pub(super) fn scroll(heading: &str, content: &Markup) -> Markup {
+    html! { div class="scroll" role="region" tabindex="0" aria-labelledby=(heading) { (content) } }
+}
+
+/// What to know before one trusts the figures; nothing when there is nothing.
+pub(super) fn notes(list: &[String]) -> Markup {
+    html! {
+        @if !list.is_empty() {
+            div class="notes" role="note" { ul { @for note in list { li { (note) } } } }
+        }
+    }
 }
 
 fn contents(chapters: &[Chapter<'_>], sweeps: &[Sweep<'_>]) -> Markup {

@@ -76,7 +76,9 @@ impl Axis {
             tick.share = (axis.lo + tick.share * (axis.hi - axis.lo) - start) / (end - start);
         }
         axis.ticks.retain(|tick| (-1e-9..=1.0 + 1e-9).contains(&tick.share));
-        axis.between.clear();
+        let parts = (start.floor() as i32..=end.ceil() as i32).flat_map(|e| (2..10).map(move |k| (e, k)));
+        let parts = parts.map(|(e, k)| (f64::from(e) + libm::log10(f64::from(k)) - start) / (end - start));
+        axis.between = parts.filter(|share| (0.0..=1.0).contains(share)).collect();
         (axis.lo, axis.hi) = (start, end);
         axis
     }

@@ -1,6 +1,7 @@
 //! The responses of a loop over frequency, continuous and sampled.
 
 use crate::analysis::Analysis;
+use controller_design::margins::Margins;
 use controller_design::model::Complex;
 use core::f64::consts::{PI, TAU};
 
@@ -30,9 +31,29 @@ pub(super) struct Curves {
     pub(super) sampled: Vec<At>,
     /// Nyquist frequency \[rad/s\].
     pub(super) nyquist: f64,
-    /// Ms and Mt of the sampled loop with their frequencies, when it is stable.
-    pub(super) peaks: Option<[(f64, f64); 2]>,
-    pub(super) ms: Option<f64>,
+    /// The margins of the sampled loop, when it is stable, and the loop gain where they are.
+    pub(super) margins: Option<Margins>,
+    pub(super) crossings: Vec<Crossing>,
+}
+
+/// A place where a margin is measured.
+pub(super) struct Crossing {
+    pub(super) kind: Kind,
+    /// Frequency \[rad/s\].
+    pub(super) omega: f64,
+    /// The margin: a factor, or degrees.
+    pub(super) margin: f64,
+    /// The loop gain there.
+    pub(super) open: Complex,
+    /// Its phase \[deg\], on the curve.
+    pub(super) phase: f64,
+}
+
+/// What a margin is a margin of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Gain,
+    Phase,
 }
 
 /// The lowest frequency that is drawn of a loop \[rad/s\].
@@ -68,16 +89,33 @@ pub(super) fn curves(index: usize, a: &Analysis, low: f64) -> Curves {
         let p = a.sampled.at((w * ts).min(PI));
         (w, p.open(), p.sensitivity(), p.complementary(), p.noise())
     }));
-    let margins = a.discrete.margins.as_ref().ok();
+    let margins = a.discrete.margins.as_ref().ok().copied();
     Curves {
         index,
         name: a.name.clone(),
         continuous,
+        crossings: margins.as_ref().map_or(Vec::new(), |m| crossings(a, m, &sampled)),
         sampled,
         nyquist,
-        peaks: margins.map(|m| [(m.omega_ms, m.ms), (m.omega_mt, m.mt)]),
-        ms: margins.map(|m| m.ms),
+        margins,
     }
+}
+
+fn crossings(a: &Analysis, m: &Margins, curve: &[At]) -> Vec<Crossing> {
+    let list = [
+        (Kind::Gain, m.omega_gm, m.gm),
+        (Kind::Gain, m.omega_gm_low, m.gm_low),
+        (Kind::Phase, m.omega_pm, m.pm_deg),
+    ];
+    let crossing = |(kind, omega, margin): (Kind, Option<f64>, f64)| {
+        let omega = omega?;
+        let open = a.sampled.at((omega * a.sampled.ts()).min(PI)).open();
+        let near = curve.iter().min_by(|p, q| (p.omega - omega).abs().total_cmp(&(q.omega - omega).abs()))?;
+        let raw = open.arg().to_degrees();
+        let phase = raw + 360.0 * libm::round((near.phase - raw) / 360.0);
+        Some(Crossing { kind, omega, margin, open, phase })
+    };
+    list.into_iter().filter_map(crossing).collect()
 }
 
 /// The responses with a phase that does not jump, begun between -360 and 0 deg.

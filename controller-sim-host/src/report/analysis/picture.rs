@@ -1,17 +1,17 @@
-//! One panel over the frequency: lines, marks and both axes.
+//! Panels over the frequency: lines, marks and both axes.
 
-use super::curves::{At, Curves};
+use super::curves::{At, Crossing, Curves, Kind};
 use crate::output::table::format_number;
-use crate::report::drawing::{LEFT, controller, percent, pixel};
+use crate::report::drawing::{COLUMNS, below, controller, grid, percent, pixel};
+use crate::report::legend;
 use crate::report::scale::Axis;
+use controller_design::margins::Margins;
 use maud::{Markup, html};
 
-/// Columns that a panel is divided into.
-const COLUMNS: f64 = 1000.0;
-/// Height of a panel and the space around it \[px\].
+/// Height of a panel and the space above and below it \[px\].
 const HEIGHT: f64 = 210.0;
-const TOP: f64 = 24.0;
-const BOTTOM: f64 = 38.0;
+const TOP: f64 = 27.0;
+const BOTTOM: f64 = 34.0;
 /// Smallest and largest phase that is drawn \[deg\]: a dead time turns for ever.
 const PHASES: (f64, f64) = (-540.0, 180.0);
 /// Smallest part of the largest value that is drawn.
@@ -23,10 +23,11 @@ struct Line {
     points: Vec<(f64, f64)>,
 }
 
-/// A marked point.
+/// A marked point, and the value that it is measured from.
 struct Mark {
     index: usize,
     at: (f64, f64),
+    from: Option<f64>,
     text: String,
 }
 
@@ -40,8 +41,8 @@ pub(super) struct Panel {
     marks: Vec<Mark>,
     /// Heights of thin lines across.
     levels: Vec<f64>,
-    /// Frequencies of thin lines upright.
-    ends: Vec<f64>,
+    /// Frequencies of thin lines upright, with their names.
+    ends: Vec<(f64, &'static str)>,
     caption: &'static str,
 }
 
@@ -57,29 +58,45 @@ pub(super) fn sampled(index: usize) -> String {
 }
 
 pub(super) fn magnitude(curves: &[Curves]) -> Panel {
-    let mut panel = panel(curves, "|L|, size of the loop gain", String::new(), |p| p.open.abs(), Kind::Ratio);
+    let mut panel =
+        panel(curves, "|L|, size of the loop gain", String::new(), |p| p.open.abs(), Scale::Ratio);
     panel.levels = vec![1.0];
+    panel.marks = crossings(curves, Kind::Gain, |crossing| Mark {
+        index: 0,
+        at: (crossing.omega, crossing.open.abs()),
+        from: Some(1.0),
+        text: format!("gain margin {}", format_number(crossing.margin)),
+    });
+    panel.caption =
+        "The loop is broken at the plant input. The sampled law ends at the Nyquist frequency, \u{3c0}/ts.";
     panel
 }
 
 pub(super) fn phase(curves: &[Curves]) -> Panel {
-    let mut panel = panel(curves, "Phase of L", "\u{b0}".to_owned(), |p| p.phase, Kind::Phase);
+    let mut panel = panel(curves, "Phase of L", "\u{b0}".to_owned(), |p| p.phase, Scale::Degrees);
     panel.levels = vec![-180.0];
+    panel.marks = crossings(curves, Kind::Phase, |crossing| Mark {
+        index: 0,
+        at: (crossing.omega, crossing.phase),
+        from: Some(360.0 * libm::round((crossing.phase + 180.0) / 360.0) - 180.0),
+        text: format!("phase margin {}\u{b0}", format_number(crossing.margin)),
+    });
     panel
 }
 
 pub(super) fn sensitivity(curves: &[Curves]) -> Panel {
-    let mut panel = panel(curves, "|S|, sensitivity", String::new(), |p| p.sensitivity, Kind::Ratio);
-    panel.marks = marks(curves, "Ms", 0);
+    let mut panel = panel(curves, "|S|, sensitivity", String::new(), |p| p.sensitivity, Scale::Ratio);
+    panel.marks = peaks(curves, "Ms", |m| (m.omega_ms, m.ms));
     panel.levels = vec![1.0];
-    panel.caption = "Where |S| is above 1, the loop amplifies disturbances. Ms is its largest value.";
+    panel.caption =
+        "Where |S| is above 1, the loop amplifies disturbances. Ms is its largest value, Mt that of |T|.";
     panel
 }
 
 pub(super) fn complementary(curves: &[Curves]) -> Panel {
     let title = "|T|, complementary sensitivity";
-    let mut panel = panel(curves, title, String::new(), |p| p.complementary, Kind::Ratio);
-    panel.marks = marks(curves, "Mt", 1);
+    let mut panel = panel(curves, title, String::new(), |p| p.complementary, Scale::Ratio);
+    panel.marks = peaks(curves, "Mt", |m| (m.omega_mt, m.mt));
     panel.levels = vec![1.0];
     panel
 }
@@ -87,29 +104,38 @@ pub(super) fn complementary(curves: &[Curves]) -> Panel {
 pub(super) fn noise(curves: &[Curves], [u, y]: &[String; 2]) -> Panel {
     let name = |unit: &str, other: &str| if unit.is_empty() { other.to_owned() } else { unit.to_owned() };
     let unit = format!("{}/{}", name(u, "u"), name(y, "y"));
-    let mut panel = panel(curves, "|u/n|, noise to output", unit, |p| p.noise, Kind::Ratio);
-    panel.ends.extend(curves.iter().map(|c| 0.5 * c.nyquist));
-    panel.caption = "The upright line in the middle is pi/(2 ts), for which noise gains are requested.";
+    let mut panel = panel(curves, "|u/n|, noise to output", unit, |p| p.noise, Scale::Ratio);
+    panel.ends.extend(curves.first().map(|c| (0.5 * c.nyquist, "\u{3c0}/(2 ts)")));
+    panel.caption = "The noise gains K of the table are those at \u{3c0}/(2 ts).";
     panel
 }
 
-fn marks(curves: &[Curves], name: &str, which: usize) -> Vec<Mark> {
-    let peak = |c: &Curves| {
-        let at = *c.peaks.as_ref()?.get(which)?;
-        Some(Mark {
-            index: c.index,
-            at,
-            text: format!("{}: {name} = {} at {} rad/s", c.name, format_number(at.1), format_number(at.0)),
-        })
+fn peaks(curves: &[Curves], name: &str, peak: impl Fn(&Margins) -> (f64, f64)) -> Vec<Mark> {
+    let mark = |c: &Curves| {
+        let at = peak(c.margins.as_ref()?);
+        let text = format!("{}: {name} = {} at {} rad/s", c.name, format_number(at.1), format_number(at.0));
+        Some(Mark { index: c.index, at, from: None, text })
     };
-    curves.iter().filter_map(peak).collect()
+    curves.iter().filter_map(mark).collect()
+}
+
+fn crossings(curves: &[Curves], kind: Kind, mark: impl Fn(&Crossing) -> Mark) -> Vec<Mark> {
+    let of = |c: &Curves| -> Vec<Mark> {
+        let own = c.crossings.iter().filter(|crossing| crossing.kind == kind).map(&mark);
+        own.map(|mark| {
+            let text = format!("{}: {} at {} rad/s", c.name, mark.text, format_number(mark.at.0));
+            Mark { index: c.index, text, ..mark }
+        })
+        .collect()
+    };
+    curves.iter().flat_map(of).collect()
 }
 
 /// How values stand on their axis.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum Scale {
     Ratio,
-    Phase,
+    Degrees,
 }
 
 fn panel(
@@ -117,7 +143,7 @@ fn panel(
     title: &'static str,
     unit: String,
     value: impl Fn(&At) -> f64,
-    kind: Kind,
+    scale: Scale,
 ) -> Panel {
     let drawn = |points: &[At]| -> Vec<(f64, f64)> {
         let all = points.iter().map(|p| (p.omega, value(p)));
@@ -131,14 +157,14 @@ fn panel(
     let numbers = || lines.iter().flat_map(|line| line.points.iter().map(|p| p.1));
     let omega = range(lines.iter().flat_map(|line| line.points.iter().map(|p| p.0)));
     let (lo, hi) = range(numbers()).unwrap_or((0.1, 1.0));
-    let shown = match kind {
-        Kind::Ratio => (lo.max(hi.min(10.0) * DEPTH), hi.max(1e-99)),
-        Kind::Phase => (lo.max(PHASES.0).min(-200.0), hi.min(PHASES.1).max(-90.0)),
+    let shown = match scale {
+        Scale::Ratio => (lo.max(hi.min(10.0) * DEPTH), hi.max(1e-99)),
+        Scale::Degrees => (lo.max(PHASES.0).min(-200.0), hi.min(PHASES.1).max(-90.0)),
     };
     for line in &mut lines {
         line.points.retain(|p| p.1 >= shown.0 && p.1 <= shown.1);
     }
-    let values = if kind == Kind::Ratio { Axis::of_sizes(Some(shown), 5) } else { Axis::degrees(shown) };
+    let values = if scale == Scale::Ratio { Axis::of_sizes(Some(shown), 7) } else { Axis::degrees(shown) };
     Panel {
         title,
         unit,
@@ -147,7 +173,7 @@ fn panel(
         lines,
         marks: Vec::new(),
         levels: Vec::new(),
-        ends: curves.iter().map(|c| c.nyquist).collect(),
+        ends: curves.first().map(|c| (c.nyquist, "\u{3c0}/ts")).into_iter().collect(),
         caption: "",
     }
 }
@@ -157,59 +183,56 @@ fn range(mut list: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     Some(list.fold((first, first), |(lo, hi), x| (lo.min(x), hi.max(x))))
 }
 
-/// The panel with its axes.
-pub(super) fn picture(id: &str, panel: &Panel) -> Markup {
-    let bottom = TOP + HEIGHT;
-    let y = |value: f64| bottom - panel.values.share(value) * HEIGHT;
-    let inside = |share: f64| (0.0..=1.0).contains(&share);
+/// Panels over one axis of frequency, with the legend above and what is marked below them.
+pub(super) fn figure(id: &str, curves: &[Curves], panels: &[Panel]) -> Markup {
+    let top = |row: usize| TOP + (TOP + HEIGHT) * row as f64;
+    let end = top(panels.len()) - TOP;
+    let titles: Vec<&str> = panels.iter().map(|panel| panel.title).collect();
     html! {
-        figure class="plot" {
-            svg class="canvas" height=(pixel(TOP + HEIGHT + BOTTOM)) role="img" aria-labelledby={ (id) "-title" } {
-                title id={ (id) "-title" } { (panel.title) " against frequency" }
-                g class="grid" {
-                    @for tick in &panel.values.ticks {
-                        line x1="0" x2="100%" y1=(pixel(bottom - tick.share * HEIGHT)) y2=(pixel(bottom - tick.share * HEIGHT)) {}
-                    }
-                    @for tick in &panel.omega.ticks {
-                        line x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(TOP)) y2=(pixel(bottom)) {}
-                    }
-                }
-                @for level in panel.levels.iter().filter(|level| inside(panel.values.share(**level))) {
-                    line class="axis" x1="0" x2="100%" y1=(pixel(y(*level))) y2=(pixel(y(*level))) {}
-                }
-                @for end in panel.ends.iter().filter(|end| inside(panel.omega.share(**end))) {
-                    line class="level" x1=(percent(panel.omega.share(*end))) x2=(percent(panel.omega.share(*end)))
-                        y1=(pixel(TOP)) y2=(pixel(bottom)) {}
-                }
-                svg class="p" y=(pixel(TOP)) width="100%" height=(pixel(HEIGHT))
-                    viewBox={ "0 0 " (COLUMNS) " " (HEIGHT) } preserveAspectRatio="none" {
-                    @for line in &panel.lines { path class=(line.class) d=(path(panel, line)) {} }
-                }
-                @for mark in &panel.marks {
-                    @let (x, height) = (panel.omega.share(mark.at.0), panel.values.share(mark.at.1));
-                    @if inside(x) && inside(height) {
-                        svg class="p" x=(percent(x)) y=(pixel(y(mark.at.1))) {
-                            circle class={ "point " (controller(mark.index)) } r="4" { title { (mark.text) } }
-                        }
-                    }
-                }
-                text class="title" x=(pixel(-LEFT)) y="14" { (panel.title) (panel.values.unit(&panel.unit)) }
-                @for tick in &panel.values.ticks {
-                    text class="n" x="-7" y=(pixel(bottom - tick.share * HEIGHT + 4.0)) { (tick.label) }
-                }
-                @for tick in &panel.omega.ticks {
-                    text class="t" x=(percent(tick.share)) y=(pixel(bottom + 17.0)) { (tick.label) }
-                }
-                line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
-                text class="title t" x="50%" y=(pixel(bottom + 33.0)) { "frequency" (panel.omega.unit("rad/s")) }
+        figure class="plot" id=(id) {
+            (legend(curves))
+            svg class="canvas" height=(pixel(end + BOTTOM)) role="img" aria-labelledby={ (id) "-title" } {
+                title id={ (id) "-title" } { (titles.join("; ")) ", against frequency" }
+                @for (row, panel) in panels.iter().enumerate() { (draw(panel, top(row))) }
+                @if let Some(last) = panels.last() { (below(&last.omega, end, "frequency", "rad/s")) }
             }
-            @if !panel.caption.is_empty() || !panel.marks.is_empty() {
-                figcaption {
-                    (panel.caption)
-                    @for mark in &panel.marks { " " (mark.text) "." }
-                }
+            figcaption {
+                @for panel in panels.iter().filter(|panel| !panel.caption.is_empty()) { (panel.caption) " " }
+                @for mark in panels.iter().flat_map(|panel| &panel.marks) { (mark.text) ". " }
             }
         }
+    }
+}
+
+fn draw(panel: &Panel, top: f64) -> Markup {
+    let bottom = top + HEIGHT;
+    let y = |value: f64| bottom - panel.values.share(value).clamp(0.0, 1.0) * HEIGHT;
+    let inside = |share: f64| (0.0..=1.0).contains(&share);
+    let seen = |mark: &&Mark| inside(panel.omega.share(mark.at.0)) && inside(panel.values.share(mark.at.1));
+    html! {
+        (grid(&panel.values, &panel.omega, (top, HEIGHT), panel.title, &panel.unit))
+        @for level in panel.levels.iter().filter(|level| inside(panel.values.share(**level))) {
+            line class="axis" x1="0" x2="100%" y1=(pixel(y(*level))) y2=(pixel(y(*level))) {}
+        }
+        @for (row, (end, name)) in panel.ends.iter().enumerate() {
+            @let x = percent(panel.omega.share(*end));
+            line class="level" x1=(x) x2=(x) y1=(pixel(top)) y2=(pixel(bottom)) {}
+            svg class="p" x=(x) {
+                text class="n halo" x="-5" y=(pixel(top + 13.0 + 15.0 * row as f64)) { (name) }
+            }
+        }
+        svg class="p" y=(pixel(top)) width="100%" height=(pixel(HEIGHT))
+            viewBox={ "0 0 " (COLUMNS) " " (HEIGHT) } preserveAspectRatio="none" {
+            @for line in &panel.lines { path class=(line.class) d=(path(panel, line)) {} }
+        }
+        @for mark in panel.marks.iter().filter(seen) {
+            @let (x, at) = (percent(panel.omega.share(mark.at.0)), pixel(y(mark.at.1)));
+            @if let Some(from) = mark.from {
+                g class=(controller(mark.index)) { line class="span" x1=(x) x2=(x) y1=(pixel(y(from))) y2=(at) {} }
+            }
+            circle class={ "point " (controller(mark.index)) } cx=(x) cy=(at) r="4" { title { (mark.text) } }
+        }
+        line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
     }
 }
 
@@ -235,20 +258,10 @@ fn path(panel: &Panel, line: &Line) -> String {
 /// Which line is which.
 pub(super) fn legend(curves: &[Curves]) -> Markup {
     html! {
-        ul class="legend plot" {
-            @for c in curves {
-                li {
-                    svg width="30" height="12" aria-hidden="true" {
-                        line class=(sampled(c.index)) x1="0" x2="30" y1="6" y2="6" {}
-                    }
-                    span { (c.name) ", sampled" }
-                }
-                li {
-                    svg width="30" height="12" aria-hidden="true" {
-                        line class=(continuous(c.index)) x1="0" x2="30" y1="6" y2="6" {}
-                    }
-                    span { (c.name) ", continuous" }
-                }
+        ul class="legend" {
+            @for c in curves { (legend::line(&controller(c.index), &c.name)) }
+            @if let Some(first) = curves.first() {
+                (legend::line(&format!("asked c{}", first.index % 8), "thin: the continuous design; thick: the sampled law"))
             }
         }
     }
