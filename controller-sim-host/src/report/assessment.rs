@@ -147,8 +147,8 @@ fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
                 @if !experiment.signals.setpoint.is_empty() { (line("ref", "set-point")) }
                 (line("level", "mean before the step"))
                 (area("window", "output held by hand"))
-                @if marked { (area("target", "where the dip belongs")) }
-                @if marked { (line("bound", "highest P3")) }
+                @if picture.target { (area("target", "where the dip belongs")) }
+                @if picture.target { (line("bound", "highest P3")) }
             }
             svg class="canvas" height=(pixel(picture.height)) role="img" aria-labelledby="figure-1-title figure-1-desc" {
                 title id="figure-1-title" {
@@ -165,7 +165,7 @@ fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
                     @if let Some(auto) = marks.auto { "; back in automatic at " (format_number(auto)) " s" }
                     "."
                 }
-                @if marked {
+                @if picture.target {
                     " Of a near-optimal loop the dip lies in the box, and the third peak P3 is at most "
                     (format!("{:.2}", experiment.acceptance.r3)) " first peaks high."
                 }

@@ -298,7 +298,8 @@ pub(super) fn controller(index: usize) -> String {
     format!("{} k{}", colour(index), (index + index / 8) % 8)
 }
 
-fn colour(index: usize) -> String {
+/// The colour of a controller, without its pattern.
+pub(super) fn colour(index: usize) -> String {
     format!("c{}", index % 8)
 }
 

@@ -40,6 +40,8 @@ pub(super) struct Picture {
     pub(super) height: f64,
     /// The time it shows \[s\].
     pub(super) time: (f64, f64),
+    /// It shows where a near-optimal loop has its dip.
+    pub(super) target: bool,
 }
 
 /// Draws the part of the record that tells something.
@@ -47,7 +49,7 @@ pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance
     let time = shown(signals, marks);
     let axis = Axis::of_time(time.0, time.1, 9);
     let seen = |t: f64| t >= time.0 && t <= time.1;
-    let target = target(marks, acceptance);
+    let target = target(marks, acceptance).filter(|target| target.t.0 < time.1);
     let pick = |t: &[f64], y: &[f64]| -> Vec<(f64, f64)> {
         let both = t.iter().copied().zip(y.iter().copied());
         both.filter(|(t, y)| seen(*t) && y.is_finite()).collect()
@@ -67,7 +69,7 @@ pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance
         .into_iter()
         .filter_map(|(name, p)| Some((name, p?)))
         .collect();
-    let gap = spans.len() as f64 * SPAN;
+    let gap = spans.len() as f64 * SPAN + 4.0;
     let below = Frame::new(&axis, range(input.iter().map(|p| p.1)), response.bottom() + gap + TITLE, OUTPUT);
     let end = below.bottom() + 6.0;
     let title = |what: &str, name: &str| match words::cut(name.trim(), 30) {
@@ -98,7 +100,7 @@ pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance
         (below.lines(&[line("c0", &input, Between::Held)]))
         (time_axis(&axis, end))
     };
-    Picture { content, height: end + 34.0, time }
+    Picture { content, height: end + 34.0, time, target: target.is_some() }
 }
 
 /// From a peak time before the step until the response has told all.
@@ -166,7 +168,7 @@ fn mark(frame: &Frame<'_>, name: &str, place: Place, above: bool) -> Markup {
 
 /// A time from the step to a feature, below the panel.
 fn span(frame: &Frame<'_>, name: &str, step: f64, place: Place, row: usize) -> Markup {
-    let y = frame.bottom() + SPAN * (row as f64 + 0.6);
+    let y = frame.bottom() + SPAN * (row as f64 + 0.75);
     let (from, to) = (frame.share(step), frame.share(place.t));
     let ends = to > 0.6;
     let tick = |share: f64| {
@@ -178,7 +180,8 @@ fn span(frame: &Frame<'_>, name: &str, step: f64, place: Place, row: usize) -> M
             (tick(from))
             (tick(to))
         }
-        svg class="p" x=(percent(to)) y=(pixel(y)) {
+        // On the side where there is room.
+        svg class="p" x=(percent(if ends { from } else { to })) y=(pixel(y)) {
             text class={ "feature" @if ends { " n" } } x=(if ends { "-6" } else { "6" }) y="4" {
                 (name) " = " (format_number(place.t - step)) " s"
             }

@@ -3,7 +3,7 @@
 use super::curves::{At, Curves};
 use super::picture::{continuous, legend, sampled};
 use crate::output::table::format_number;
-use crate::report::drawing::{controller, pixel};
+use crate::report::drawing::{colour, pixel};
 use maud::{Markup, html};
 
 /// What is shown of the plane: real and imaginary part.
@@ -47,7 +47,7 @@ pub(super) fn plot(id: &str, curves: &[Curves]) -> Markup {
                 line class="axis" y1="0" y2=(pixel(height)) x1=(pixel(x(0.0))) x2=(pixel(x(0.0))) {}
                 circle class="level" cx=(pixel(x(0.0))) cy=(pixel(y(0.0))) r=(pixel(UNIT)) {}
                 @for (c, ms) in &circles {
-                    circle class={ "l applied c" (c.index % 8) } cx=(pixel(x(-1.0))) cy=(pixel(y(0.0))) r=(pixel(UNIT / ms)) {}
+                    circle class={ "l applied " (colour(c.index)) } cx=(pixel(x(-1.0))) cy=(pixel(y(0.0))) r=(pixel(UNIT / ms)) {}
                 }
                 @for c in curves {
                     path class=(continuous(c.index)) d=(path(&c.continuous)) {}
@@ -55,7 +55,7 @@ pub(super) fn plot(id: &str, curves: &[Curves]) -> Markup {
                 }
                 @for c in curves {
                     @for crossing in c.crossings.iter().filter(|c| inside((c.open.re, c.open.im))) {
-                        circle class={ "point " (controller(c.index)) } r="4"
+                        circle class={ "point " (colour(c.index)) } r="4"
                             cx=(pixel(x(crossing.open.re))) cy=(pixel(y(crossing.open.im))) { title { (c.name) } }
                     }
                 }

@@ -2,7 +2,7 @@
 
 use super::curves::{At, Crossing, Curves, Kind};
 use crate::output::table::format_number;
-use crate::report::drawing::{COLUMNS, below, controller, grid, percent, pixel};
+use crate::report::drawing::{COLUMNS, below, colour, controller, grid, percent, pixel};
 use crate::report::legend;
 use crate::report::scale::Axis;
 use controller_design::margins::Margins;
@@ -48,7 +48,7 @@ pub(super) struct Panel {
 
 /// The classes of the continuous line of a controller.
 pub(super) fn continuous(index: usize) -> String {
-    format!("l asked c{}", index % 8)
+    format!("l asked {}", colour(index))
 }
 
 /// The classes of the sampled line of a controller.
@@ -228,9 +228,9 @@ fn draw(panel: &Panel, top: f64) -> Markup {
         @for mark in panel.marks.iter().filter(seen) {
             @let (x, at) = (percent(panel.omega.share(mark.at.0)), pixel(y(mark.at.1)));
             @if let Some(from) = mark.from {
-                g class=(controller(mark.index)) { line class="span" x1=(x) x2=(x) y1=(pixel(y(from))) y2=(at) {} }
+                g class=(colour(mark.index)) { line class="span" x1=(x) x2=(x) y1=(pixel(y(from))) y2=(at) {} }
             }
-            circle class={ "point " (controller(mark.index)) } cx=(x) cy=(at) r="4" { title { (mark.text) } }
+            circle class={ "point " (colour(mark.index)) } cx=(x) cy=(at) r="4" { title { (mark.text) } }
         }
         line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
     }
@@ -261,7 +261,7 @@ pub(super) fn legend(curves: &[Curves]) -> Markup {
         ul class="legend" {
             @for c in curves { (legend::line(&controller(c.index), &c.name)) }
             @if let Some(first) = curves.first() {
-                (legend::line(&format!("asked c{}", first.index % 8), "thin: the continuous design; thick: the sampled law"))
+                (legend::line(&format!("asked {}", colour(first.index)), "thin: the continuous design; thick: the sampled law"))
             }
         }
     }
