@@ -14,6 +14,21 @@ const SCENARIOS: &str = "controller-sim-host/scenarios";
 /// Folders of it whose scenarios run; others may hold parts that scenarios include.
 const FOLDERS: [&str; 2] = ["", "figures"];
 
+/// A scenario in which a person steps the output, below the workspace root.
+const STEP_TEST: &str = "tests/browser/step-test.toml";
+
+/// The records that pages are made of: the file, and the scenario that it is a run of.
+const RECORDS: [(&str, &str); 2] = [("step.csv", "step-test.toml"), ("loop.csv", "load-experiment.toml")];
+
+/// Pages of commands that do not simulate a scenario: the name, and the words of the command.
+const STUDIES: [(&str, &[&str]); 5] = [
+    ("identify", &["identify", "step.csv"]),
+    ("assess-good", &["assess", "loop.csv", "--controller", "well tuned"]),
+    ("assess-swings", &["assess", "loop.csv", "--controller", "ti too short"]),
+    ("analyze", &["analyze", "demo.toml"]),
+    ("analyze-blocks", &["analyze", "latency.toml"]),
+];
+
 /// Samples of the long page.
 const LONG: u64 = 1_000_000;
 /// Most bytes of the long page: one that is decimated has far less, one that is not has 50 times as much.
@@ -32,6 +47,7 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
     // First: checks that cannot fail would say nothing about the pages.
     node(root, "self_test.mjs", &tools).arg("--scratch").arg(&scratch).run()?;
     let mut built = short_pages(root, &program, &pages)?;
+    built.extend(studies(root, &program, &pages)?);
     built.push(long_page(&program, &pages)?);
     let memory = memory::ladder(&program, &scratch)?.map_or_else(String::new, |remark| format!("; {remark}"));
     let list = built.iter().map(|name| pages.join(name));
@@ -63,6 +79,21 @@ fn short_pages(root: &Path, program: &Path, pages: &Path) -> Outcome<Vec<String>
         std::iter::once("run").chain(scenarios.iter().take(2).map(String::as_str)).collect();
     build("several-at-once", &several)?;
     Ok(built)
+}
+
+/// The pages of processes, experiments and loops, beside the scenarios; gives their names.
+fn studies(root: &Path, program: &Path, pages: &Path) -> Outcome<Vec<String>> {
+    std::fs::copy(root.join(STEP_TEST), pages.join("step-test.toml"))
+        .map_err(|e| format!("cannot copy {STEP_TEST}: {e}"))?;
+    for (record, scenario) in RECORDS {
+        Cmd::new(program, pages).args(["run", scenario, "--quiet", "--csv", record]).capture()?;
+    }
+    let build = |(name, words): (&str, &[&str])| {
+        let page = format!("{name}.html");
+        Cmd::new(program, pages).args(words).args(["--report", &page]).capture()?;
+        Ok(page)
+    };
+    STUDIES.into_iter().map(build).collect()
 }
 
 /// The page of a long noisy run, which must stay small; gives its name.
@@ -145,6 +176,27 @@ mod tests {
         let found = scenarios(&root.join(SCENARIOS)).unwrap();
         assert!(found.contains(&"demo.toml".to_string()), "{found:?}");
         assert!(scenarios(Path::new("no-such-folder")).unwrap_err().contains("no-such-folder"));
+    }
+
+    #[test]
+    fn studies_are_made_of_what_there_is() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        let scenarios = scenarios(&root.join(SCENARIOS)).unwrap();
+        let step_test = Path::new(STEP_TEST).file_name().unwrap().to_str().unwrap();
+        assert!(root.join(STEP_TEST).is_file());
+        for (record, scenario) in RECORDS {
+            assert!(scenario == step_test || scenarios.contains(&scenario.to_string()), "{scenario}");
+            assert!(STUDIES.iter().any(|(_, words)| words.contains(&record)), "{record}");
+        }
+        for (name, words) in STUDIES {
+            let input = words[1].to_string();
+            assert!(
+                RECORDS.iter().any(|(record, _)| *record == input) || scenarios.contains(&input),
+                "{name}"
+            );
+            // Pages of the scenarios are called after them.
+            assert!(!scenarios.contains(&format!("{name}.toml")), "{name}");
+        }
     }
 
     #[test]

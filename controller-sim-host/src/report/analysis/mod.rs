@@ -28,9 +28,13 @@ pub(super) fn page(list: &[Analysed<'_>], command: &str) -> String {
 }
 
 fn title(one: &Analysed<'_>) -> String {
-    let title = one.scenario.title.trim();
-    let title = if title.is_empty() { one.name } else { title };
-    one.case.map_or_else(|| title.to_owned(), |case| format!("{title}: {case}"))
+    let title = match one.scenario.title.trim() {
+        // Typed, or from the standard input.
+        "" if one.name.starts_with('<') => format!("Loop of the plant {}", one.scenario.plant),
+        "" => one.name.to_owned(),
+        title => title.to_owned(),
+    };
+    one.case.map_or_else(|| title.clone(), |case| format!("{title}: {case}"))
 }
 
 pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup {

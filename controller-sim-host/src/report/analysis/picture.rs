@@ -65,7 +65,11 @@ pub(super) fn magnitude(curves: &[Curves]) -> Panel {
         index: 0,
         at: (crossing.omega, crossing.open.abs()),
         from: Some(1.0),
-        text: format!("gain margin {}", format_number(crossing.margin)),
+        text: format!(
+            "gain margin {}{}",
+            if crossing.margin < 1.0 { "downwards " } else { "" },
+            format_number(crossing.margin)
+        ),
     });
     panel.caption =
         "The loop is broken at the plant input. The sampled law ends at the Nyquist frequency, \u{3c0}/ts.";
@@ -113,22 +117,15 @@ pub(super) fn noise(curves: &[Curves], [u, y]: &[String; 2]) -> Panel {
 fn peaks(curves: &[Curves], name: &str, peak: impl Fn(&Margins) -> (f64, f64)) -> Vec<Mark> {
     let mark = |c: &Curves| {
         let at = peak(c.margins.as_ref()?);
-        let text = format!("{}: {name} = {} at {} rad/s", c.name, format_number(at.1), format_number(at.0));
-        Some(Mark { index: c.index, at, from: None, text })
+        Some(Mark { index: c.index, at, from: None, text: format!("{name} = {}", format_number(at.1)) })
     };
     curves.iter().filter_map(mark).collect()
 }
 
 fn crossings(curves: &[Curves], kind: Kind, mark: impl Fn(&Crossing) -> Mark) -> Vec<Mark> {
-    let of = |c: &Curves| -> Vec<Mark> {
-        let own = c.crossings.iter().filter(|crossing| crossing.kind == kind).map(&mark);
-        own.map(|mark| {
-            let text = format!("{}: {} at {} rad/s", c.name, mark.text, format_number(mark.at.0));
-            Mark { index: c.index, text, ..mark }
-        })
-        .collect()
-    };
-    curves.iter().flat_map(of).collect()
+    let all = curves.iter().flat_map(|c| c.crossings.iter().map(|crossing| (c.index, crossing)));
+    let own = all.filter(|(_, crossing)| crossing.kind == kind);
+    own.map(|(index, crossing)| Mark { index, ..mark(crossing) }).collect()
 }
 
 /// How values stand on their axis.
@@ -198,10 +195,18 @@ pub(super) fn figure(id: &str, curves: &[Curves], panels: &[Panel]) -> Markup {
             }
             figcaption {
                 @for panel in panels.iter().filter(|panel| !panel.caption.is_empty()) { (panel.caption) " " }
-                @for mark in panels.iter().flat_map(|panel| &panel.marks) { (mark.text) ". " }
+                @for c in curves { (said(c, panels)) }
             }
         }
     }
+}
+
+/// What is marked of one controller, in words.
+fn said(c: &Curves, panels: &[Panel]) -> Markup {
+    let own = panels.iter().flat_map(|panel| &panel.marks).filter(|mark| mark.index == c.index);
+    let list: Vec<String> =
+        own.map(|mark| format!("{} at {} rad/s", mark.text, format_number(mark.at.0))).collect();
+    html! { @if !list.is_empty() { (c.name) ": " (list.join(", ")) ". " } }
 }
 
 fn draw(panel: &Panel, top: f64) -> Markup {
