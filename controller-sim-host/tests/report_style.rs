@@ -1,6 +1,7 @@
 //! Colours that can be told from the paper, in both schemes: contrast as the accessibility guidelines define it.
 
 const FIGURE: &str = include_str!("../src/report/style/figure.css");
+const DIAGRAM: &str = include_str!("../src/report/style/diagram.css");
 const PAGE: &str = include_str!("../src/report/style/page.css");
 const DARK: &str = "@media screen and (prefers-color-scheme:dark)";
 
@@ -56,6 +57,33 @@ fn lines_and_texts_stand_out_from_the_paper() {
         let badge = value(style, ".plot .events circle", "fill");
         assert!(contrast(value(style, ".plot .events .number", "fill"), badge) >= 4.5);
         assert!(contrast(value(style, ".plot .events .name", "fill"), paper) >= 4.5);
+    }
+}
+
+/// `above` on `paper`, as a colour.
+fn mixed(above: &str, opacity: f64, paper: &str) -> String {
+    let full = |colour: &str| if colour == "#fff" { "#ffffff".to_owned() } else { colour.to_owned() };
+    let channel = |colour: &str, at: usize| {
+        f64::from(u8::from_str_radix(&full(colour)[at..at + 2], 16).expect("a colour"))
+    };
+    let mix = |at| channel(above, at) * opacity + channel(paper, at) * (1.0 - opacity);
+    format!("#{}", [1, 3, 5].map(|at| format!("{:02x}", mix(at).round() as u8)).concat())
+}
+
+/// Texts and lines of pictures stand in areas that mark times and values.
+#[test]
+fn texts_and_lines_stand_out_from_marked_areas() {
+    for (figure, diagram) in schemes(FIGURE).into_iter().zip(schemes(DIAGRAM)) {
+        let paper = value(figure, ".plot .paper", "fill");
+        for area in [".plot .window", ".plot .rest", ".plot .target"] {
+            let opacity = value(diagram, area, "fill-opacity").parse().expect("a number");
+            let ground = mixed(value(diagram, area, "fill"), opacity, paper);
+            let text = value(figure, ".plot text", "fill").trim();
+            assert!(contrast(text, &ground) >= 4.5, "{text} on {ground}, {area}");
+            assert!(contrast(value(figure, ".plot .c0", "color"), &ground) >= 3.0, "{area}");
+        }
+        assert!(contrast(value(diagram, ".plot .bound", "stroke"), paper) >= 3.0);
+        assert_eq!(value(diagram, ".plot .feature,.plot .halo", "stroke"), paper);
     }
 }
 

@@ -18,4 +18,5 @@ mod runs;
 mod same_bytes;
 mod schema;
 mod several;
+mod studies;
 mod tune;
