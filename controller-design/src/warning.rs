@@ -3,7 +3,7 @@
 use core::fmt;
 
 /// Room for everything one design can be warned about.
-pub const MAX_WARNINGS: usize = 12;
+pub const MAX_WARNINGS: usize = 16;
 
 /// The warnings of a design, in the order they were found.
 pub type Warnings = heapless::Vec<Warning, MAX_WARNINGS>;

@@ -9,6 +9,9 @@ use controller_design::model::TransferFunction;
 
 /// Delay margin in samples below which a sampling period is too long.
 const FEW_SAMPLES: f64 = 10.0;
+/// Longest window of the comparison, and longest one with steps between the samples, in samples.
+const LONGEST: f64 = 2e5;
+const FINE: f64 = 2e4;
 /// Delay margin in samples above which it could be much longer.
 const MANY_SAMPLES: f64 = 200.0;
 
@@ -93,8 +96,13 @@ const UNSETTLED: Refusal =
 
 /// Runs the loop of a design by its own design file.
 fn simulated(made: Design) -> Option<Outcome> {
-    let text = design_file::of(&made, None, "").text();
-    let scenario = read(&text, Precision::F64).ok()?.scenario;
+    let mut file = design_file::of(&made, None, "");
+    file.window = file.window.min(LONGEST * made.ts);
+    let mut scenario = read(&file.text(), Precision::F64).ok()?.scenario;
+    if file.window > FINE * made.ts {
+        // So many samples show the response between them, too.
+        scenario.substeps = 1;
+    }
     let result = run(&scenario, RunOptions::default()).ok()?;
     let events = &result.controllers.first()?.events;
     let [setpoint, load] = [events.first()?, events.get(1)?].map(|stretch| stretch.metrics.iae);

@@ -98,6 +98,7 @@ fn window(made: &Design) -> f64 {
     if let Law::Adrc(adrc) = &made.law {
         // What the closed form of the IE says of its slow mode, and the lags that come on top of it.
         let mode = made.predicted.ie_setpoint.map_or(0.0, f64::abs);
+        let mode = if plant.integrators() > 0 { 2.0 * mode } else { mode };
         slowest = slowest.max(mode + lags.sum::<f64>()).max(adrc.kd / adrc.kp);
     }
     let samples = ((SETTLING * slowest + 10.0 * dead_time) / made.ts).clamp(10.0, LONGEST);

@@ -7,8 +7,10 @@ use controller_design::design::{Design, Law, Request, design_with_areas};
 use controller_design::identification::{
     Chosen, Fit, Identified, IdentifyOptions, Recording, SecondOrder, identify,
 };
-use controller_design::model::{Polynomial, TransferFunction};
+use controller_design::model::{Polynomial, Sopdt, TransferFunction};
 
+/// A lag below this share of the sampling period counts as dead time.
+const FAST_LAG: f64 = 0.05;
 /// Share of the output's range that noise may move it by without a warning.
 const QUIET: f64 = 0.05;
 /// Share of the recorded change of the input that the load of the design file steps by.
@@ -74,7 +76,7 @@ pub fn tune(recording: &Recording<'_>, request: &Request, known: &Known) -> Resu
 }
 
 fn designed(found: &Identified, request: &Request) -> Result<Design, Refusal> {
-    let plant = plant(found)?;
+    let plant = plant(found, request.ts)?;
     let measured = (found.chosen == Chosen::Areas).then_some(&found.areas);
     design_with_areas(&plant, measured, request)
 }
@@ -83,12 +85,12 @@ fn designed(found: &Identified, request: &Request) -> Result<Design, Refusal> {
 ///
 /// # Errors
 /// What the identification refuses.
-pub fn plant_of(found: &Identified) -> Result<TransferFunction, Refusal> {
-    plant(found)
+pub fn plant_of(found: &Identified, ts: f64) -> Result<TransferFunction, Refusal> {
+    plant(found, ts)
 }
 
 /// The model in whose place the controller works: the fit that was chosen, else the model of second order.
-fn plant(found: &Identified) -> Result<TransferFunction, Refusal> {
+fn plant(found: &Identified, ts: f64) -> Result<TransferFunction, Refusal> {
     const NONE: Refusal = Refusal::Data {
         why: "no model describes the record",
         help: "record a larger step, and until the output is at rest",
@@ -98,12 +100,24 @@ fn plant(found: &Identified) -> Result<TransferFunction, Refusal> {
             let num = Polynomial::new([gain, gain * b1]);
             TransferFunction::from_polynomials(&num, &Polynomial::new([1.0, a1, a2, a3, a4]), dead_time)
         }
-        (_, _, Some(SecondOrder { gain, a1, a2, dead_time })) => {
-            TransferFunction::second_order(gain, a1, a2, dead_time)
-        }
-        _ => return Err(NONE),
+        _ => return second_order(found, ts).ok_or(NONE),
     };
-    model.map_err(|_| NONE)
+    let model = model.map_err(|_| NONE)?;
+    // A lag that is much faster than the sampling was not seen by it either.
+    let is_slow = model.poles().iter().all(|pole| pole.abs() * FAST_LAG * ts < 1.0);
+    if is_slow { Ok(model) } else { second_order(found, ts).ok_or(NONE) }
+}
+
+/// The model of second order; a lag that is much faster than the sampling counts as dead time.
+fn second_order(found: &Identified, ts: f64) -> Option<TransferFunction> {
+    let SecondOrder { gain, a1, a2, dead_time } = found.model?;
+    let model = Sopdt { gain, a1, a2, dead_time };
+    match model.time_constants() {
+        Some((slow, fast)) if fast < FAST_LAG * ts => {
+            TransferFunction::first_order(gain, slow, dead_time + fast).ok()
+        }
+        _ => model.transfer_function().ok(),
+    }
 }
 
 /// The loop around the recorded operating point: the same change of the set-point, and a load of a fifth of the recorded
@@ -145,21 +159,50 @@ fn warnings(recording: &Recording<'_>, found: &Identified, made: &Design, known:
         let share = size * gain / (hi - lo);
         if share > QUIET && share.is_finite() {
             list.push(format!(
-                "{what}, {}, times the noise gain {} moves the output by {:.0} % of {of}: ask for a lower noise gain (--kpidn, --kden) or filter the measurement",
+                "{what}, {}, times the noise gain {} moves the output by {:.0} % of {of}: {}",
                 crate::scenario::show_short(size),
                 crate::scenario::show_short(gain),
-                100.0 * share
+                100.0 * share,
+                calmer(made)
             ));
         }
     }
-    if found.kp_spread > 0.3 && made.areas.is_some() {
+    if found.kp_spread > 0.3 && made.areas.is_some() && made.noise.kpidn.is_some() {
         list.push(format!(
             "kp follows from the record to {:.0} % only: record a larger step, or ask for a longer filter (a lower --kpidn)",
             100.0 * found.kp_spread.min(9.99)
+        ));
+    }
+    let recorded =
+        recording.u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), u| (lo.min(*u), hi.max(*u)));
+    if let Some((lo, hi)) = known.limits
+        && (recorded.0 < lo || recorded.1 > hi)
+    {
+        list.push(format!(
+            "the input was recorded from {} to {}, beyond the limits {lo} to {hi}",
+            recorded.0, recorded.1
         ));
     }
     if known.limits.is_none() {
         list.push("the range of the output is not known: `--limits LO:HI` puts it into the file".to_owned());
     }
     list
+}
+
+/// What makes the output calmer, by the options of the method.
+fn calmer(made: &Design) -> &'static str {
+    let options = made.method.options();
+    if options.contains(&"kden") {
+        "ask for a lower noise gain (--kpidn, --kden) or filter the measurement"
+    } else if options.contains(&"kpidn") {
+        "ask for a lower noise gain (--kpidn) or filter the measurement"
+    } else if options.contains(&"noise_ratio") {
+        "ask for a lower --noise-ratio or filter the measurement"
+    } else if options.contains(&"tf") {
+        "ask for a longer filter (--tf) or filter the measurement"
+    } else if options.contains(&"ms") {
+        "ask for a lower --ms or filter the measurement"
+    } else {
+        "filter the measurement"
+    }
 }

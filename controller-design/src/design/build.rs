@@ -8,7 +8,7 @@ use super::{
 use crate::areas::Areas;
 use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
 use crate::margins::{Margins, TOO_MANY_TURNS};
-use crate::model::TransferFunction;
+use crate::model::{Sopdt, TransferFunction};
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
 use crate::rules::reduction::Reduced;
 use crate::rules::{
@@ -16,7 +16,7 @@ use crate::rules::{
 };
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
-use controller_core::{Adrc, AdrcCoefficients, AdrcConfig, ObserverConfig, PidConfig};
+use controller_core::{Adrc, AdrcCoefficients, AdrcConfig, EstimatorConfig, ObserverConfig, PidConfig};
 
 /// Default maximum sensitivity of rules that are given one.
 const DEFAULT_MS: f64 = 1.4;
@@ -29,6 +29,11 @@ const DEFAULT_NOISE_RATIO: f64 = 4.0;
 /// Default limit of the maximum sensitivity with an observer whose noise ratio is chosen.
 const DEFAULT_MS_MAX: f64 = 2.0;
 
+/// Steps by which an observer's filter is slowed down.
+const SLOWER: f64 = 1.05;
+const SLOWER_STEPS: usize = 120;
+/// A lag below this share of the sampling period counts as dead time.
+const FAST_LAG: f64 = 0.05;
 /// Largest maximum sensitivity of a robust loop.
 const ROBUST: f64 = 2.0;
 /// Delay margin in samples below which the sampling period is too long.
@@ -177,6 +182,7 @@ impl Job<'_> {
         let Reduced { gain, a1, a2, dead_time, .. } = *model;
         self.made.model = Some(RuleModel { gain, integrators: 0, a1, a2, dead_time });
         let Some(mut estimator) = made.estimator else { return Ok(plain(made.pid)) };
+        without_fast_lag(&mut estimator, ts);
         if let Some(most) = self.request.ms_max {
             within(&self.delayed, &made.pid, &mut estimator, model, (most, ts), &mut self.made.warnings)?;
         }
@@ -218,12 +224,53 @@ impl Job<'_> {
                 ObserverDesign::within_ms(&self.delayed, &pid, DEFAULT_NOISE_RATIO, most)
             }
         }?;
+        let limit = match self.request.observer_filter {
+            ObserverFilter::Default => Some(most.unwrap_or(DEFAULT_MS_MAX)),
+            _ => most,
+        };
+        let made = match limit {
+            Some(limit) => self.slowed(made, &pid, limit)?,
+            None => made,
+        };
         made.warnings.iter().for_each(|warning| self.warn(*warning));
         self.made.noise.an = Some(made.an);
         let mut observer: ObserverConfig = made.observer;
         // The block adds the latency itself.
         observer.model.dead_time = self.plant.dead_time();
         Ok(Law::Pid { pid, estimator: None, observer: Some(observer) })
+    }
+
+    /// The observer with the filter slowed down until the sampled loop, too, is within `most`; a filter that was asked for is
+    /// kept or refused.
+    fn slowed(
+        &self,
+        mut made: ObserverDesign,
+        pid: &PidConfig,
+        most: f64,
+    ) -> Result<ObserverDesign, Refusal> {
+        let sampled = |made: &ObserverDesign| {
+            let law = DiscreteLaw::with_compensator(pid, &made.observer.to_compensator(0.0), self.request.ts)
+                .ok()?;
+            Some(DiscreteLoop::new(&self.delayed, law, 0.0).ok()?.margins().ok()?.ms)
+        };
+        let ms = |made: &ObserverDesign| made.ms.max(sampled(made).unwrap_or(f64::INFINITY));
+        let is_fixed =
+            matches!(self.request.observer_filter, ObserverFilter::Time(_) | ObserverFilter::Wanted(_));
+        for _ in 0..SLOWER_STEPS {
+            let reached = ms(&made);
+            if reached <= most {
+                return Ok(made);
+            }
+            if is_fixed {
+                return Err(Refusal::Unattainable {
+                    what: "ms_max with this filter",
+                    asked: most,
+                    least: reached,
+                });
+            }
+            made = ObserverDesign::with_alpha(&self.delayed, pid, SLOWER * made.observer.alpha)?;
+        }
+        Err(Refusal::Unattainable { what: "ms_max", asked: most, least: ms(&made) })
     }
 
     fn least_iae(&mut self) -> Result<Law, Refusal> {
@@ -235,6 +282,18 @@ impl Job<'_> {
 
     pub(super) fn warn(&mut self, warning: Warning) {
         self.made.note(warning);
+    }
+}
+
+/// A lag much faster than the sampling is a part of the dead time: a block cannot invert it.
+fn without_fast_lag(estimator: &mut EstimatorConfig, ts: f64) {
+    let EstimatorConfig { gain, a1, a2, dead_time, .. } = *estimator;
+    if let Some((slow, fast)) = (Sopdt { gain, a1, a2, dead_time }).time_constants()
+        && a2 > 0.0
+        && fast < FAST_LAG * ts
+        && slow > fast
+    {
+        (estimator.a1, estimator.a2, estimator.dead_time) = (slow, 0.0, dead_time + fast);
     }
 }
 
@@ -351,7 +410,10 @@ fn finish(
         if pid.ki != 0.0 && delayed.differentiators() == 0 {
             let rest = estimator.as_ref().map_or(1.0, |estimator| 1.0 - estimator.kfd);
             predicted.ie_load = Some(if observer.is_some() { 0.0 } else { -rest / pid.ki });
-            let static_error = if delayed.integrators() > 0 { 0.0 } else { 1.0 / delayed.gain() };
+            let inverse = if delayed.integrators() > 0 { 0.0 } else { 1.0 / delayed.gain() };
+            // An estimator whose model has another gain sees a disturbance where there is none.
+            let static_error =
+                estimator.as_ref().map_or(inverse, |e| inverse + e.kfd * (1.0 / e.gain - inverse));
             predicted.ie_setpoint = Some((static_error + (1.0 - pid.b) * pid.kp) / pid.ki);
         }
     }

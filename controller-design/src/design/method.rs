@@ -86,6 +86,22 @@ impl Method {
         }
     }
 
+    /// The options of a request that it looks at, by their names in files.
+    #[must_use]
+    pub const fn options(self) -> &'static [&'static str] {
+        match self {
+            Self::Momi | Self::Drmo => &["tf", "kpidn"],
+            Self::DeMomi => &["tf", "kpidn", "tfd", "kden", "ms_max"],
+            Self::PiMs => &["ms"],
+            Self::Dob => &["ms", "ms_max", "alpha", "noise_ratio", "want"],
+            Self::PiIae => &[],
+            Self::Ah => &["tf", "ms"],
+            Self::Adrc => &["ms"],
+            Self::Amigo => &["tf"],
+            Self::Simc => &["tf", "tau_c"],
+        }
+    }
+
     /// Whether it puts a disturbance estimator or observer beside the PID.
     #[must_use]
     pub const fn has_block(self) -> bool {

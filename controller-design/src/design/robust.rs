@@ -57,6 +57,12 @@ pub(super) fn within(
         return Ok(());
     }
     let plain = ms(&EstimatorConfig { kfd: 0.0, ..*estimator }, f64::INFINITY);
+    if !plain.is_finite() {
+        return Err(Refusal::NoSolution {
+            why: "the loop cannot be built or is not stable at this sampling period, with or without the estimator",
+            help: "choose a shorter ts, or a lower noise gain",
+        });
+    }
     if plain > most {
         return Err(Refusal::Unattainable { what: "ms_max", asked: most, least: plain });
     }

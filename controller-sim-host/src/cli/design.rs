@@ -3,7 +3,7 @@
 use super::arguments::DesignArguments;
 use super::quoting::quoted;
 use super::wish::usual_period;
-use super::{Failure, print};
+use super::{EXIT_REFUSED, Failure, print};
 use crate::advise::advise;
 use crate::design_file;
 use crate::output::{self, FileTarget, Problem, Trouble};
@@ -22,11 +22,22 @@ pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Res
             return Err(problem.help("choose one of them, then save it").into());
         }
         let advice = advise(&plant, ts, |method| arguments.wish.request(method, ts, None));
+        if advice.rows.iter().all(|row| row.outcome.is_err()) {
+            let refusals = advice.rows.iter().filter_map(|row| {
+                let refusal = row.outcome.as_ref().err()?;
+                Some(refused(row.method, refusal).troubles)
+            });
+            return Err(Failure { troubles: refusals.flatten().collect(), code: EXIT_REFUSED });
+        }
         return Ok(print(&if json { output::advice_json(&advice) } else { output::advice_table(&advice) })?);
     };
     let idle = arguments.wish.idle(method);
     if !idle.is_empty() {
         return Err(Failure::input(idle.into_iter().map(Trouble::from).collect()));
+    }
+    if arguments.save.as_ref().is_some_and(|path| path.as_os_str() == "-") {
+        let message = "`--save -` is not possible: the standard output has the table";
+        return Err(Problem::new("file", message).help("give a file: `--save loop.toml`").into());
     }
     let target = arguments.save.as_ref().map(|path| FileTarget::new(path, arguments.force)).transpose()?;
     let made = design(&plant, &arguments.wish.request(method, ts, None)).map_err(|r| refused(method, &r))?;

@@ -14,11 +14,13 @@ use crate::output::{
     Analysed, FileTarget, Identification, Problem, Severity, Source, Tuning, advice_json, advice_table,
     publish, render, tune_json, tune_table,
 };
+use crate::output::is_same_file;
 use crate::report::{self, Chapter};
 use crate::scenario::{Units, read};
 use crate::simulate::{COLUMNS, Metrics, Precision, RunOptions, View, run as simulate};
 use crate::tuning::{Known, Tuned, plant_of, tune};
 use clap::{Args, ValueHint};
+use controller_design::Refusal;
 use controller_design::identification::{IdentifyOptions, identify};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -60,6 +62,12 @@ pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Resul
     };
     let save = target("--save", &arguments.save, &mut problems);
     let page = target("--report", &arguments.report, &mut problems);
+    if let (Some(one), Some(two)) = (&arguments.save, &arguments.report)
+        && is_same_file(one, two)
+    {
+        let message = format!("`--save` and `--report` are the same file `{}`", two.display());
+        problems.push(Problem::new("file", message).help("give one of them another name"));
+    }
     if !problems.is_empty() {
         return Err(Failure::input(problems.into_iter().map(Into::into).collect()));
     }
@@ -75,7 +83,10 @@ pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Resul
         command: command.to_owned(),
     };
     let request = arguments.wish.request(method, ts, Some(MS_MAX).filter(|_| method.has_block()));
-    let tuned = tune(&recording, &request, &known).map_err(|refusal| refused(method, &refusal))?;
+    let tuned = tune(&recording, &request, &known).map_err(|refusal| match refusal {
+        Refusal::Data { .. } => unusable(&source, &log, &refusal),
+        _ => refused(method, &refusal),
+    })?;
     let finding = Identification { source: Source::from(&source), log: &log, recording, found: &tuned.found };
     let path =
         |target: &Option<FileTarget>| target.as_ref().map(|target| target.path().display().to_string());
@@ -124,7 +135,7 @@ fn compare(arguments: &TuneArguments, json: bool) -> Result<(), Failure> {
     let ts = arguments.ts.unwrap_or_else(|| usual_distance(recording.t));
     let found = identify(&recording, &IdentifyOptions::default());
     let plant =
-        found.and_then(|found| plant_of(&found)).map_err(|refusal| unusable(&source, &log, &refusal))?;
+        found.and_then(|found| plant_of(&found, ts)).map_err(|refusal| unusable(&source, &log, &refusal))?;
     let advice = advise(&plant, ts, |method| {
         arguments.wish.request(method, ts, Some(MS_MAX).filter(|_| method.has_block()))
     });
@@ -211,7 +222,7 @@ fn usual_distance(times: &[f64]) -> f64 {
     distances.sort_by(f64::total_cmp);
     let median = distances.get(distances.len() / 2).copied().unwrap_or(1.0);
     // Stamps are rounded; nobody means 0.9999999 s.
-    format!("{median:.5e}").parse().unwrap_or(median)
+    format!("{median:.3e}").parse().unwrap_or(median)
 }
 
 fn worst_residual(finding: &Identification<'_>) -> f64 {

@@ -69,23 +69,25 @@ impl Wish {
 
     /// Options that mean nothing to `method`.
     pub(super) fn idle(&self, method: Method) -> Vec<Problem> {
-        use Method::{Ah, Amigo, DeMomi, Dob, Drmo, Momi, PiMs, Simc};
         let given = [
-            ("--tf", self.tf.is_some(), &[Momi, Drmo, DeMomi, Ah, Amigo, Simc][..]),
-            ("--kpidn", self.kpidn.is_some(), &[Momi, Drmo, DeMomi]),
-            ("--tfd", self.tfd.is_some(), &[DeMomi]),
-            ("--kden", self.kden.is_some(), &[DeMomi]),
-            ("--ms", self.ms.is_some(), &[PiMs, Dob, Ah, Method::Adrc]),
-            ("--ms-max", self.ms_max.is_some(), &[DeMomi, Dob]),
-            ("--tau-c", self.tau_c.is_some(), &[Simc]),
-            ("--noise-ratio", self.noise_ratio.is_some(), &[Dob]),
-            ("--alpha", self.alpha.is_some(), &[Dob]),
-            ("--want", self.want.is_some(), &[Dob]),
+            ("tf", self.tf.is_some()),
+            ("kpidn", self.kpidn.is_some()),
+            ("tfd", self.tfd.is_some()),
+            ("kden", self.kden.is_some()),
+            ("ms", self.ms.is_some()),
+            ("ms_max", self.ms_max.is_some()),
+            ("tau_c", self.tau_c.is_some()),
+            ("noise_ratio", self.noise_ratio.is_some()),
+            ("alpha", self.alpha.is_some()),
+            ("want", self.want.is_some()),
         ];
-        let idle = given.into_iter().filter(|(_, is_given, of)| *is_given && !of.contains(&method));
-        idle.map(|(option, _, of)| {
-            let of: Vec<&str> = of.iter().map(|method| method.name()).collect();
-            Problem::new("usage", format!("`{option}` means nothing to the method {}", method.name()))
+        let idle =
+            given.into_iter().filter(|(option, is_given)| *is_given && !method.options().contains(option));
+        idle.map(|(option, _)| {
+            let of = Method::ALL.into_iter().filter(|method| method.options().contains(&option));
+            let of: Vec<&str> = of.map(Method::name).collect();
+            let option = option.replace('_', "-");
+            Problem::new("usage", format!("`--{option}` means nothing to the method {}", method.name()))
                 .help(format!("it belongs to {}", of.join(", ")))
         })
         .collect()

@@ -61,7 +61,7 @@ impl Tuning<'_> {
                     ("IAE of the set-point step", format!("{} y s", number(setpoint.iae))),
                     ("IAE of the load step", format!("{} y s", number(load.iae))),
                     ("largest error of the load step", format!("{} y", number(load.e_max))),
-                    ("largest residual of the model", format!("{} y", number(self.worst_residual))),
+                    ("largest residual, second-order model", format!("{} y", number(self.worst_residual))),
                 ]),
             ),
         ]
@@ -73,7 +73,7 @@ impl Tuning<'_> {
 pub fn tune_table(tuning: &Tuning<'_>) -> String {
     let mut out = identify_table(&tuning.finding);
     out.push_str(&format!(
-        "largest distance of the model from the record: {}\n\n",
+        "largest distance of the second-order model from the record: {}\n\n",
         format_number(tuning.worst_residual)
     ));
     out.push_str(&design_table(tuning.made));

@@ -24,6 +24,9 @@ const RATIO: Allowed = Allowed::new(1.000_001, 1e9, "");
 /// Keys that a designed controller does not have beside it.
 const MADE: [&str; 4] = ["pid", "estimator", "observer", "adrc"];
 
+/// The keys beside the method.
+const OPTIONS: [&str; 9] = ["tf", "kpidn", "tfd", "kden", "ms", "ms_max", "alpha", "noise_ratio", "tau_c"];
+
 /// Parameters that come from the design, for the places of what is wrong with them.
 const PARAMS: [Param; 12] = [
     Param::Kp,
@@ -84,6 +87,20 @@ pub(super) fn read(table: &Table<'_>, places: &mut Places) -> Option<Wish> {
     request.ms = number("ms", SENSITIVITY);
     request.ms_max = number("ms_max", SENSITIVITY);
     request.tau_c = number("tau_c", TIME);
+    if let Some(method) = &method {
+        for option in OPTIONS {
+            let Some(span) = part.key_span(option).filter(|_| !method.value.options().contains(&option))
+            else {
+                continue;
+            };
+            let message =
+                format!("`{}` means nothing to the method {}", part.name(option), method.value.name());
+            let of = Method::ALL.into_iter().filter(|method| method.options().contains(&option));
+            let of: Vec<&str> = of.map(Method::name).collect();
+            let help = format!("it belongs to {}", of.join(", "));
+            part.log.fault(Fault::new(code::CONFLICT, span, message).help(help));
+        }
+    }
     let (span, name) = (part.place.clone(), part.whole_name());
     part.finish();
     method.map(|method| Wish { request, span: if span.is_empty() { method.span } else { span }, name })
