@@ -18,7 +18,7 @@ fn pages(name: &str) -> Vec<(&'static str, String)> {
     folder.done(&["demo", "load-experiment", "--csv", "loop.csv", "--quiet"]);
     let demo = include_str!("../../scenarios/demo.toml");
     folder.write("demo.toml", demo);
-    folder.write("sweep.toml", &format!("{demo}\n[sweep]\nlatency = [0.0, 0.05]\n"));
+    folder.write("sweep.toml", &format!("{demo}\n[sweep]\nkey = \"latency\"\nvalues = [0.0, 0.05]\n"));
     let kinds: [(&str, &[&str]); 4] = [
         ("identify", &["identify", "step.csv"]),
         ("assess", &["assess", "loop.csv", "--controller", "well tuned"]),
