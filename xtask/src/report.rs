@@ -21,8 +21,9 @@ const STEP_TEST: &str = "tests/browser/step-test.toml";
 const RECORDS: [(&str, &str); 2] = [("step.csv", "step-test.toml"), ("loop.csv", "load-experiment.toml")];
 
 /// Pages of commands that do not simulate a scenario: the name, and the words of the command.
-const STUDIES: [(&str, &[&str]); 5] = [
+const STUDIES: [(&str, &[&str]); 6] = [
     ("identify", &["identify", "step.csv"]),
+    ("tune", &["tune", "step.csv", "--limits", "0:100"]),
     ("assess-good", &["assess", "loop.csv", "--controller", "well tuned"]),
     ("assess-swings", &["assess", "loop.csv", "--controller", "ti too short"]),
     ("analyze", &["analyze", "demo.toml"]),

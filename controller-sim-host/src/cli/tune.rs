@@ -10,11 +10,11 @@ use super::{Failure, colours, examples, print};
 use crate::advise::advise;
 use crate::analysis::analyse;
 use crate::log::Log;
+use crate::output::is_same_file;
 use crate::output::{
     Analysed, FileTarget, Identification, Problem, Severity, Source, Tuning, advice_json, advice_table,
     publish, render, tune_json, tune_table,
 };
-use crate::output::is_same_file;
 use crate::report::{self, Chapter};
 use crate::scenario::{Units, read};
 use crate::simulate::{COLUMNS, Metrics, Precision, RunOptions, View, run as simulate};

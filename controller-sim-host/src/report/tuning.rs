@@ -17,11 +17,11 @@ pub(super) fn page(
     let content = html! {
         main {
             (summary(tuning))
-            section aria-labelledby="process" {
+            section {
                 h2 id="process" { "The process" }
                 (identification::sections(&tuning.finding))
             }
-            section aria-labelledby="loop" {
+            section {
                 h2 id="loop" { "The loop" }
                 p {
                     "Simulated with the law that is flashed: the set-point changes as the record did, then a load of a "
@@ -29,7 +29,7 @@ pub(super) fn page(
                 }
                 (chapter::show(0, std::slice::from_ref(chapter)))
             }
-            section aria-labelledby="margins" {
+            section {
                 h2 id="margins" { "Robustness and noise" }
                 (analysis::chapter(0, analysed, false))
             }
@@ -47,10 +47,10 @@ fn summary(tuning: &Tuning<'_>) -> Markup {
         @if !notes.is_empty() {
             div class="notes" role="note" { ul { @for note in &notes { li { (note) } } } }
         }
-        section aria-labelledby="summary" {
+        section {
             h2 id="summary" { "For the commissioning file" }
-            p { (made.method.title()) " (" (made.method.source()) ") for the model" }
-            div class="scroll" role="region" tabindex="0" aria-label="Model" {
+            p { (made.method.title()) " (" (made.method.source()) "), for this model of the process, in which the loop is simulated, too:" }
+            div class="scroll" role="region" tabindex="0" aria-label="Model of the process" {
                 pre { code { (rounded_numbers(&made.plant.to_string())) } }
             }
             @for (title, rows) in &groups {
