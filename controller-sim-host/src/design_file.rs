@@ -4,8 +4,11 @@ use crate::scenario::{self, ControllerSpec, DesignFile, Units};
 use controller_core::{LimitConfig, PidConfig};
 use controller_design::design::{Design, Law};
 
-/// The slowest time constants there are until a step is over: what is left is `exp(-9)`, 1e-4.
-const SETTLING: f64 = 9.0;
+/// The slowest time constants there are until a step is over: what is left is about
+/// `exp(-14)`, 1e-6.
+const SETTLING: f64 = 14.0;
+/// Height of a peak of the sensitivities from which a loop swings.
+const RESONANT: f64 = 1.3;
 /// Longest run of a design file, in samples.
 const LONGEST: f64 = 2e6;
 
@@ -98,8 +101,17 @@ fn window(made: &Design) -> f64 {
     if let Law::Adrc(adrc) = &made.law {
         // What the closed form of the IE says of its slow mode, and the lags that come on top of it.
         let mode = made.predicted.ie_setpoint.map_or(0.0, f64::abs);
-        let mode = if plant.integrators() > 0 { 2.0 * mode } else { mode };
+        let mode = if plant.integrators() > 0 { 4.0 * mode } else { mode };
         slowest = slowest.max(mode + lags.sum::<f64>()).max(adrc.kd / adrc.kp);
+    }
+    // A resonance of height m at w has a damping of about 1/(2*m) and decays with w/(2*m).
+    let (one, two) = (&made.robustness, &made.sampled.margins);
+    let peaks =
+        [(one.ms, one.omega_ms), (one.mt, one.omega_mt), (two.ms, two.omega_ms), (two.mt, two.omega_mt)];
+    for (height, omega) in peaks {
+        if height > RESONANT && omega > 0.0 {
+            slowest = slowest.max(2.0 * height / omega);
+        }
     }
     let samples = ((SETTLING * slowest + 10.0 * dead_time) / made.ts).clamp(10.0, LONGEST);
     // By way of text: a round number of seconds stays one.

@@ -130,7 +130,8 @@ fn file(found: &Identified, made: &Design, known: &Known) -> DesignFile {
     }
     file.units = known.units.clone();
     file.initial_setpoint = rounded(found.y0);
-    file.initial_load = rounded(found.y0 / made.plant.gain() - found.u0);
+    // Exactly: the loop rests at the recorded input, which may be a limit.
+    file.initial_load = file.initial_setpoint / made.plant.gain() - found.u0;
     file.setpoint_step = rounded(found.y_inf - found.y0);
     file.load_step = rounded(LOAD * (found.u_inf - found.u0));
     // What a converter rounds away is no noise of its own.
