@@ -67,7 +67,7 @@ impl Job<'_> {
         if tau_c.is_none() && dead_time == 0.0 {
             return Err(Refusal::Plant {
                 must: "have a dead time, which is the rule's choice for the time constant tau_c of the closed loop",
-                help: "give tau_c",
+                help: "give tau_c, the time constant that the closed loop shall have",
             });
         }
         let made = match model {
