@@ -238,6 +238,6 @@ mod tests {
         let group = names("figures/dob-fig-4").expect("several");
         assert!(group.len() > 1 && group.iter().all(|name| name.starts_with("dob-fig-04-")), "{group:?}");
         assert_eq!((names(""), names("wind")), (Err(None), Err(Some("windup"))));
-        assert_eq!((names("chaptr"), names("dob-figg")), (Err(Some("chapter")), Err(Some("dob-fig"))));
+        assert_eq!((names("chaptr"), names("de-figg")), (Err(Some("chapter")), Err(Some("de-fig"))));
     }
 }

@@ -76,7 +76,7 @@ const COMMANDS: [Command; 7] = [
     },
     Command {
         name: "bench",
-        about: "the simulation (fails below 100 times a numpy loop) and the time of each tuning rule",
+        about: "speed of simulation (fails below 100 times numpy) and tuning rules",
         options: &[],
     },
     Command { name: "docs", about: "build the documentation; warnings are errors", options: &[] },

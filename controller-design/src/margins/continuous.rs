@@ -101,11 +101,12 @@ impl ContinuousLoop {
     /// use controller_core::AdrcConfig;
     /// use controller_design::margins::ContinuousLoop;
     /// use controller_design::model::parse;
-    /// // The plant that the law assumes: S of the loop with a fast observer tends to that of the state feedback.
+    /// // On the plant that the law assumes S is (beta2 + kp + kd*beta1)/(beta3*kp) * s^3 at low frequencies.
     /// let plant = parse("5/s^2").expect("a valid plant");
-    /// let law = AdrcConfig::from_bandwidths(5.0, 1.0, 1e4);
+    /// let law = AdrcConfig::from_bandwidths(5.0, 2.0, 8.0);
     /// let made = ContinuousLoop::of_adrc(&plant, &law).expect("a valid law");
-    /// assert!(made.margins().expect("stable").ms < 1.001);
+    /// let expected = (law.beta2 + law.kp + law.kd * law.beta1) / (law.beta3 * law.kp) * 1e-9;
+    /// assert!((made.sensitivity(1e-3).abs() / expected - 1.0).abs() < 1e-3);
     /// ```
     pub fn of_adrc(plant: &TransferFunction, config: &AdrcConfig) -> Result<Self, Refusal> {
         let adrc = AdrcPaths::new(config)?;

@@ -9,7 +9,7 @@ use crate::Refusal;
 /// ```
 /// use controller_design::model::Fopdt;
 /// let tank = Fopdt { gain: 1.98, tau: 80.3, dead_time: 3.2 };
-/// assert_eq!(tank.transfer_function()?.to_string(), "1.98*exp(-3.2*s)/(80.3*s+1)");
+/// assert_eq!(tank.transfer_function()?.to_string(), "1.98*exp(-3.2*s)/(1+80.3*s)");
 /// # Ok::<(), controller_design::model::ModelError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
