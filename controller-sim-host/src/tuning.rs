@@ -108,16 +108,10 @@ fn plant(found: &Identified, ts: f64) -> Result<TransferFunction, Refusal> {
     if is_slow { Ok(model) } else { second_order(found, ts).ok_or(NONE) }
 }
 
-/// The model of second order; a lag that is much faster than the sampling counts as dead time.
+/// The model of second order.
 fn second_order(found: &Identified, ts: f64) -> Option<TransferFunction> {
     let SecondOrder { gain, a1, a2, dead_time } = found.model?;
-    let model = Sopdt { gain, a1, a2, dead_time };
-    match model.time_constants() {
-        Some((slow, fast)) if fast < FAST_LAG * ts => {
-            TransferFunction::first_order(gain, slow, dead_time + fast).ok()
-        }
-        _ => model.transfer_function().ok(),
-    }
+    Sopdt { gain, a1, a2, dead_time }.without_fast_lag(ts).transfer_function().ok()
 }
 
 /// The loop around the recorded operating point: the same change of the set-point, and a load of a fifth of the recorded

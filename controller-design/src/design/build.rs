@@ -1,13 +1,10 @@
 //! From a request to a design, rule by rule.
 
+use super::finish::finish;
 use super::robust::within;
-use super::{
-    Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Predicted, Request, RuleModel,
-    Sampled,
-};
+use super::{Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Request, RuleModel};
 use crate::areas::Areas;
-use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop};
-use crate::margins::{Margins, TOO_MANY_TURNS};
+use crate::margins::{DiscreteLaw, DiscreteLoop};
 use crate::model::{Sopdt, TransferFunction};
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
 use crate::rules::reduction::Reduced;
@@ -16,7 +13,7 @@ use crate::rules::{
 };
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
-use controller_core::{Adrc, AdrcCoefficients, AdrcConfig, EstimatorConfig, ObserverConfig, PidConfig};
+use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
 
 /// Default maximum sensitivity of rules that are given one.
 const DEFAULT_MS: f64 = 1.4;
@@ -32,12 +29,6 @@ const DEFAULT_MS_MAX: f64 = 2.0;
 /// Steps by which an observer's filter is slowed down.
 const SLOWER: f64 = 1.05;
 const SLOWER_STEPS: usize = 120;
-/// A lag below this share of the sampling period counts as dead time.
-const FAST_LAG: f64 = 0.05;
-/// Largest maximum sensitivity of a robust loop.
-const ROBUST: f64 = 2.0;
-/// Delay margin in samples below which the sampling period is too long.
-const FEW_SAMPLES: f64 = 10.0;
 
 /// Designs a controller for `plant`.
 ///
@@ -72,11 +63,11 @@ pub fn design_with_areas(
 /// What a rule leaves behind besides the law.
 #[derive(Default)]
 pub(super) struct Made {
-    areas: Option<Areas>,
+    pub(super) areas: Option<Areas>,
     pub(super) model: Option<RuleModel>,
-    noise: Noise,
-    iae_load: Option<f64>,
-    warnings: Warnings,
+    pub(super) noise: Noise,
+    pub(super) iae_load: Option<f64>,
+    pub(super) warnings: Warnings,
 }
 
 impl Made {
@@ -161,20 +152,26 @@ impl Job<'_> {
         let areas = self.areas()?;
         let ts = self.request.ts;
         let gain = self.noise_gain(&areas, PidRule::Momi);
-        let tf = match gain {
-            None => self.filter_time(),
-            Some(gain) => Momi::with_noise_limit(&areas, gain, ts)?.pid.tf,
+        let kden = match self.request.estimator_filter {
+            EstimatorFilter::Time(_) => None,
+            EstimatorFilter::NoiseGain(kden) => Some(kden),
+            EstimatorFilter::Default => Some(gain.unwrap_or(DEFAULT_NOISE_GAIN / areas.of(0).abs())),
         };
-        let made = match (self.request.estimator_filter, gain) {
-            (EstimatorFilter::Time(tfd), _) => DeMomi::new(&areas, tf, tfd),
-            (EstimatorFilter::NoiseGain(kden), Some(gain)) => {
-                DeMomi::with_noise_limits(&areas, gain, kden, ts)
+        let made = match (gain, kden, self.request.estimator_filter) {
+            (Some(gain), Some(kden), _) => DeMomi::with_noise_limits(&areas, gain, kden, ts),
+            (None, Some(kden), _) => DeMomi::with_estimator_limit(&areas, self.filter_time(), kden, ts),
+            (Some(gain), None, EstimatorFilter::Time(tfd)) => {
+                DeMomi::new(&areas, Momi::with_noise_limit(&areas, gain, ts)?.pid.tf, tfd)
             }
-            (EstimatorFilter::NoiseGain(kden), None) => DeMomi::with_estimator_limit(&areas, tf, kden, ts),
-            (EstimatorFilter::Default, Some(gain)) => DeMomi::with_noise_limits(&areas, gain, gain, ts),
-            (EstimatorFilter::Default, None) => {
-                let kden = DEFAULT_NOISE_GAIN / areas.of(0).abs();
-                DeMomi::with_estimator_limit(&areas, tf, kden, ts)
+            (None, None, EstimatorFilter::Time(tfd)) => DeMomi::new(&areas, self.filter_time(), tfd),
+            // Without a time constant there is a gain.
+            (_, None, _) => {
+                return Err(Refusal::OutOfRange {
+                    parameter: "kden",
+                    value: f64::NAN,
+                    min: 0.0,
+                    max: f64::MAX,
+                });
             }
         }?;
         made.warnings.iter().for_each(|warning| self.warn(*warning));
@@ -182,7 +179,9 @@ impl Job<'_> {
         let Reduced { gain, a1, a2, dead_time, .. } = *model;
         self.made.model = Some(RuleModel { gain, integrators: 0, a1, a2, dead_time });
         let Some(mut estimator) = made.estimator else { return Ok(plain(made.pid)) };
-        without_fast_lag(&mut estimator, ts);
+        let EstimatorConfig { gain, a1, a2, dead_time, .. } = estimator;
+        let slow = Sopdt { gain, a1, a2, dead_time }.without_fast_lag(ts);
+        (estimator.a1, estimator.a2, estimator.dead_time) = (slow.a1, slow.a2, slow.dead_time);
         if let Some(most) = self.request.ms_max {
             within(&self.delayed, &made.pid, &mut estimator, model, (most, ts), &mut self.made.warnings)?;
         }
@@ -285,18 +284,6 @@ impl Job<'_> {
     }
 }
 
-/// A lag much faster than the sampling is a part of the dead time: a block cannot invert it.
-fn without_fast_lag(estimator: &mut EstimatorConfig, ts: f64) {
-    let EstimatorConfig { gain, a1, a2, dead_time, .. } = *estimator;
-    if let Some((slow, fast)) = (Sopdt { gain, a1, a2, dead_time }).time_constants()
-        && a2 > 0.0
-        && fast < FAST_LAG * ts
-        && slow > fast
-    {
-        (estimator.a1, estimator.a2, estimator.dead_time) = (slow, 0.0, dead_time + fast);
-    }
-}
-
 /// A PID alone.
 pub(super) fn plain(pid: PidConfig) -> Law {
     Law::Pid { pid, estimator: None, observer: None }
@@ -315,134 +302,10 @@ fn late(plant: &TransferFunction, latency: f64) -> Result<TransferFunction, Refu
     })
 }
 
-/// The continuous loop of a law.
-fn continuous(plant: &TransferFunction, law: &Law, latency: f64) -> Result<ContinuousLoop, Refusal> {
-    let (pid, estimator, observer) = match law {
-        Law::Pid { pid, estimator, observer } => (pid, estimator, observer),
-        Law::Adrc(config) => return Ok(ContinuousLoop::of_adrc(plant, config)?.with_latency(latency)),
-    };
-    let mut made = ContinuousLoop::new(plant, pid).with_latency(latency);
-    if let Some(estimator) = estimator {
-        made = made.with_estimator(estimator)?;
-    }
-    if let Some(observer) = observer {
-        made = made.with_observer(observer)?;
-    }
-    Ok(made)
-}
-
-/// The integrals of the error with an ADRC, from the sampled law at `z = 1`: with `1 - C_u = n*c`, `n = 1 - 1/z`, the load
-/// gives `-ts*c/kp` and the set-point `ts*(c/K + kd)/kp`, in the coefficients of the law.
-fn of_adrc(config: &AdrcConfig, plant: &TransferFunction, ts: f64) -> Option<Predicted> {
-    let AdrcCoefficients { g, l1, l2, l3, kp, kd } = Adrc::<f64>::new(config, ts).ok()?.coefficients();
-    if plant.differentiators() > 0 {
-        return None;
-    }
-    let c = (l2 / g + kp * (1.0 - l1) + kd * (l1 - 0.5 * l2)) / l3;
-    let static_error = if plant.integrators() > 0 { 0.0 } else { c / plant.gain() };
-    Some(Predicted {
-        ie_setpoint: Some(ts * (static_error + kd) / kp),
-        ie_load: Some(-ts * c / kp),
-        iae_load: None,
-    })
-}
-
-/// The loop of the law that will run on the sampled plant.
-fn sampled(plant: &TransferFunction, law: &Law, request: &Request) -> Result<Sampled, Refusal> {
-    const LONG: Refusal = Refusal::NoSolution {
-        why: "the law cannot be built for this sampling period",
-        help: "choose a shorter ts, so that every time constant is at least ts/1000 and tf at least ts/2",
-    };
-    let made = match law {
-        Law::Pid { pid, estimator, observer } => {
-            let estimator = estimator.as_ref().map(|estimator| estimator.to_compensator(request.latency));
-            let observer = observer.as_ref().map(|observer| observer.to_compensator(request.latency));
-            match estimator.or(observer) {
-                Some(compensator) => DiscreteLaw::with_compensator(pid, &compensator, request.ts),
-                None => DiscreteLaw::new(pid, request.ts),
-            }
-        }
-        Law::Adrc(config) => DiscreteLaw::adrc(config, request.ts),
-    };
-    let made = made.map_err(|_| LONG)?;
-    let made = DiscreteLoop::new(plant, made, request.latency)?;
-    let (margins, noise) = made.margins_and_noise().map_err(|refusal| match refusal {
-        TOO_MANY_TURNS => refusal,
-        Refusal::NoSolution { .. } => Refusal::NoSolution {
-            why: "the sampled loop is not stable, although the continuous one is",
-            help: "choose a shorter ts",
-        },
-        other => other,
-    })?;
-    Ok(Sampled { margins, noise })
-}
-
-/// The delay margin in samples when it is so small that the sampling matters.
-fn few_samples(margins: &Margins, ts: f64) -> Option<f64> {
-    let samples = margins.delay_margin / ts;
-    (samples < FEW_SAMPLES).then_some(samples)
-}
-
 fn check(parameter: &'static str, value: f64, min: f64, max: f64) -> Result<(), Refusal> {
     if (min..=max).contains(&value) {
         Ok(())
     } else {
         Err(Refusal::OutOfRange { parameter, value, min, max })
     }
-}
-
-/// What can be said of the loop as a whole.
-fn finish(
-    plant: &TransferFunction,
-    delayed: &TransferFunction,
-    request: &Request,
-    law: Law,
-    made: Made,
-) -> Result<Design, Refusal> {
-    let Made { areas, model, mut noise, iae_load, mut warnings } = made;
-    let robustness = continuous(plant, &law, request.latency)?.margins()?;
-    let sampled = sampled(plant, &law, request)?;
-    let mut predicted = Predicted { iae_load, ..Predicted::default() };
-    let mut filtered_areas = None;
-    if let Law::Pid { pid, estimator, observer } = &law {
-        noise.kpidn = Some(noise_limit::kpidn(pid, request.ts));
-        filtered_areas = areas.map(|areas| areas.filtered(pid.tf));
-        if pid.ki != 0.0 && delayed.differentiators() == 0 {
-            let rest = estimator.as_ref().map_or(1.0, |estimator| 1.0 - estimator.kfd);
-            predicted.ie_load = Some(if observer.is_some() { 0.0 } else { -rest / pid.ki });
-            let inverse = if delayed.integrators() > 0 { 0.0 } else { 1.0 / delayed.gain() };
-            // An estimator whose model has another gain sees a disturbance where there is none.
-            let static_error =
-                estimator.as_ref().map_or(inverse, |e| inverse + e.kfd * (1.0 / e.gain - inverse));
-            predicted.ie_setpoint = Some((static_error + (1.0 - pid.b) * pid.kp) / pid.ki);
-        }
-    }
-    if let Law::Adrc(config) = &law {
-        predicted = of_adrc(config, delayed, request.ts).unwrap_or(predicted);
-    }
-    let ms = robustness.ms.max(sampled.margins.ms);
-    if ms > ROBUST && request.ms.is_none_or(|asked| asked < ROBUST) && request.ms_max.is_none() {
-        let text = "above 2, little robustness: a slower filter, a smaller noise gain or ms_max lowers it";
-        warn(&mut warnings, Warning::Value { about: "Ms", value: ms, text });
-    }
-    if let Some(samples) = few_samples(&sampled.margins, request.ts) {
-        let text =
-            "the delay margin in samples: below 10 the sampling itself costs robustness; choose a shorter ts";
-        warn(&mut warnings, Warning::Value { about: "ts", value: samples, text });
-    }
-    Ok(Design {
-        method: request.method,
-        ts: request.ts,
-        latency: request.latency,
-        plant: plant.clone(),
-        law,
-        areas,
-        filtered_areas,
-        model,
-        robustness,
-        sampled,
-        noise,
-        predicted,
-        warnings,
-    })
 }

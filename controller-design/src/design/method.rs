@@ -108,6 +108,23 @@ impl Method {
         matches!(self, Self::DeMomi | Self::Dob)
     }
 
+    /// What it gives, in a few words.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Momi => "PID, magnitude optimum by areas: for set-points",
+            Self::Drmo => "PID, disturbance-rejection magnitude optimum: for loads",
+            Self::DeMomi => "MOMI with a disturbance estimator",
+            Self::PiMs => "PI of the largest ki within a maximum sensitivity",
+            Self::Dob => "that PI with a disturbance observer",
+            Self::PiIae => "PI of the least IAE after a load step",
+            Self::Ah => "PID by Åström and Hägglund's kappa-tau rules",
+            Self::Adrc => "active disturbance rejection control, second order",
+            Self::Amigo => "PID by AMIGO",
+            Self::Simc => "PID by SIMC",
+        }
+    }
+
     /// Where the rule was published.
     #[must_use]
     pub const fn source(self) -> &'static str {

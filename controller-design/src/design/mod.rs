@@ -12,6 +12,7 @@
 //! ```
 
 mod build;
+mod finish;
 mod method;
 mod models;
 mod request;

@@ -13,35 +13,17 @@ const NEAR_PEAK: f64 = 0.85;
 /// `|L|` against 1 from which an extreme might still cross 1 between two samples.
 const NEAR_ONE: f64 = 0.3;
 
-/// Those of a loop that nothing is known of.
-const NONE: Margins = Margins {
-    ms: 0.0,
-    omega_ms: 0.0,
-    mt: 0.0,
-    omega_mt: 0.0,
-    gm: f64::INFINITY,
-    omega_gm: None,
-    gm_low: 0.0,
-    omega_gm_low: None,
-    pm_deg: f64::INFINITY,
-    omega_pm: None,
-    delay_margin: f64::INFINITY,
-    omega_delay: None,
-};
-
 impl Scan {
     /// The largest sensitivity alone.
     pub(super) fn ms(&self, at: &dyn Fn(f64) -> Point) -> Result<f64, Refusal> {
-        let (omega_ms, ms) = self.peak(at, Point::sensitivity);
-        let mut margins = Margins { ms, omega_ms, ..NONE };
+        let mut margins = Margins::of_peaks(self.peak(at, Point::sensitivity), (0.0, 0.0));
         self.limit(&mut margins)?;
         Ok(margins.ms)
     }
 
     pub(super) fn margins(&self, at: &dyn Fn(f64) -> Point) -> Result<Margins, Refusal> {
-        let (omega_ms, ms) = self.peak(at, Point::sensitivity);
-        let (omega_mt, mt) = self.peak(at, Point::complementary);
-        let mut margins = Margins { ms, omega_ms, mt, omega_mt, ..NONE };
+        let mut margins =
+            Margins::of_peaks(self.peak(at, Point::sensitivity), self.peak(at, Point::complementary));
         for pair in self.points.windows(2) {
             if let [a, b] = pair {
                 self.gain_crossover(at, a, b, &mut margins);

@@ -66,3 +66,23 @@ pub struct Margins {
     /// Gain crossover that belongs to `delay_margin`.
     pub omega_delay: Option<f64>,
 }
+
+impl Margins {
+    /// The peaks, with no crossing found yet; each value comes with its frequency.
+    fn of_peaks((omega_ms, ms): (f64, f64), (omega_mt, mt): (f64, f64)) -> Self {
+        Self {
+            ms,
+            omega_ms,
+            mt,
+            omega_mt,
+            gm: f64::INFINITY,
+            omega_gm: None,
+            gm_low: 0.0,
+            omega_gm_low: None,
+            pm_deg: f64::INFINITY,
+            omega_pm: None,
+            delay_margin: f64::INFINITY,
+            omega_delay: None,
+        }
+    }
+}

@@ -4,6 +4,9 @@
 use super::{ModelError, TransferFunction};
 use crate::Refusal;
 
+/// A lag below this share of the sampling period counts as dead time.
+const FAST_LAG: f64 = 0.05;
+
 /// First order plus dead time: `gain*exp(-dead_time*s)/(1 + tau*s)`.
 ///
 /// ```
@@ -94,6 +97,26 @@ impl Sopdt {
     /// Those of [`TransferFunction::second_order`].
     pub fn transfer_function(&self) -> Result<TransferFunction, ModelError> {
         TransferFunction::second_order(self.gain, self.a1, self.a2, self.dead_time)
+    }
+
+    /// The same model with a lag that is far below the sampling period `ts` \[s\] (a twentieth) as dead time: sampled, the two
+    /// cannot be told apart, and a compensator cannot invert the lag.
+    ///
+    /// ```
+    /// use controller_design::model::Sopdt;
+    /// let fitted = Sopdt { gain: 2.0, a1: 10.001, a2: 0.01, dead_time: 2.1 };
+    /// let model = fitted.without_fast_lag(0.1);
+    /// assert!((model.a1 - 10.0).abs() < 1e-6 && model.a2 == 0.0 && (model.dead_time - 2.101).abs() < 1e-6);
+    /// assert_eq!(fitted.without_fast_lag(0.001), fitted);
+    /// ```
+    #[must_use]
+    pub fn without_fast_lag(self, ts: f64) -> Self {
+        match self.time_constants() {
+            Some((slow, fast)) if fast > 0.0 && fast < FAST_LAG * ts && slow > fast => {
+                Self { a1: slow, a2: 0.0, dead_time: self.dead_time + fast, ..self }
+            }
+            _ => self,
+        }
     }
 
     /// The two time constants, the slower first \[s\]; `None` for complex poles.

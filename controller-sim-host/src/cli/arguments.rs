@@ -5,6 +5,7 @@ use super::identify::IdentifyArguments;
 use super::reproduce::ReproduceArguments;
 use super::wish::Wish;
 use crate::simulate::Precision;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use controller_design::design::Method;
 use std::path::PathBuf;
@@ -128,8 +129,8 @@ pub(super) struct DesignArguments {
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub(super) plant: String,
     /// The tuning rule; `advise` compares all of them on the plant
-    #[arg(long, value_enum)]
-    pub(super) method: MethodName,
+    #[arg(long, value_parser = Rule::parser())]
+    pub(super) method: Rule,
     /// Sampling period \[s\]; if not given, a round one about 200 times shorter than the plant's response
     #[arg(long, value_name = "S", value_parser = super::wish::positive)]
     pub(super) ts: Option<f64>,
@@ -194,49 +195,24 @@ fn time(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A tuning rule, or all of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum MethodName {
-    /// PID, magnitude optimum by areas: for set-points
-    Momi,
-    /// PID, disturbance-rejection magnitude optimum: for loads
-    Drmo,
-    /// MOMI with a disturbance estimator
-    DeMomi,
-    /// PI of the largest ki within a maximum sensitivity
-    PiMs,
-    /// That PI with a disturbance observer
-    Dob,
-    /// PI of the least IAE after a load step
-    PiIae,
-    /// PID by Åström and Hägglund's kappa-tau rules
-    Ah,
-    /// Active disturbance rejection control, second order
-    Adrc,
-    /// PID by AMIGO
-    Amigo,
-    /// PID by SIMC
-    Simc,
-    /// Compares all of them on the plant
-    Advise,
-}
+/// A tuning rule; none: a comparison of all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Rule(pub(super) Option<Method>);
 
-impl MethodName {
-    /// The one rule, if it is one.
-    pub(super) fn one(self) -> Option<Method> {
-        match self {
-            Self::Momi => Some(Method::Momi),
-            Self::Drmo => Some(Method::Drmo),
-            Self::DeMomi => Some(Method::DeMomi),
-            Self::PiMs => Some(Method::PiMs),
-            Self::Dob => Some(Method::Dob),
-            Self::PiIae => Some(Method::PiIae),
-            Self::Ah => Some(Method::Ah),
-            Self::Adrc => Some(Method::Adrc),
-            Self::Amigo => Some(Method::Amigo),
-            Self::Simc => Some(Method::Simc),
-            Self::Advise => None,
-        }
+/// The word for the comparison.
+const ADVISE: &str = "advise";
+
+impl Rule {
+    /// The names of all rules, with what each is.
+    fn words() -> Vec<PossibleValue> {
+        let rules =
+            Method::ALL.into_iter().map(|method| PossibleValue::new(method.name()).help(method.about()));
+        rules.chain([PossibleValue::new(ADVISE).help("compares all of them on the plant")]).collect()
+    }
+
+    /// Reads a name; clap tells what is wrong with it and what was meant.
+    pub(super) fn parser() -> impl TypedValueParser<Value = Self> {
+        PossibleValuesParser::new(Self::words()).map(|name| Self(Method::named(&name)))
     }
 }
 

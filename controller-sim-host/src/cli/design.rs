@@ -16,7 +16,7 @@ use controller_design::model::{TransferFunction, parse};
 pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Result<(), Failure> {
     let plant = plant(&arguments.plant)?;
     let ts = arguments.ts.unwrap_or_else(|| usual_period(&plant));
-    let Some(method) = arguments.method.one() else {
+    let Some(method) = arguments.method.0 else {
         if arguments.save.is_some() {
             let problem = Problem::new("usage", "`--save` needs one method; `advise` compares all of them");
             return Err(problem.help("choose one of them, then save it").into());
@@ -73,6 +73,12 @@ pub(super) fn plant(text: &str) -> Result<TransferFunction, Failure> {
 
 /// What a rule refuses: well-formed input without a result.
 pub(super) fn refused(method: Method, refusal: &Refusal) -> Failure {
+    // A number that was typed and cannot be is a mistake of whoever typed it.
+    if let Refusal::OutOfRange { parameter, .. } = refusal
+        && (matches!(*parameter, "ts" | "latency") || method.options().contains(parameter))
+    {
+        return Problem::new("usage", format!("{}: {refusal}", method.name())).help(refusal.help()).into();
+    }
     let message = format!("no design by {}: {refusal}", method.name());
     Failure::refused(Problem::new("refused", message).help(refusal.help()))
 }

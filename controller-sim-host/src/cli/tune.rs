@@ -1,6 +1,6 @@
 //! `tune`: from a log to a loop.
 
-use super::arguments::MethodName;
+use super::arguments::Rule;
 use super::design::refused;
 use super::quoting::quoted;
 use super::run::OPEN;
@@ -34,8 +34,8 @@ pub(super) struct TuneArguments {
     #[command(flatten)]
     record: StepLog,
     /// The tuning rule
-    #[arg(long, value_enum, default_value_t = MethodName::DeMomi)]
-    method: MethodName,
+    #[arg(long, value_parser = Rule::parser(), default_value = "de-momi")]
+    method: Rule,
     /// Sampling period of the controller \[s\]; if not given, the usual distance of the log's rows
     #[arg(long, value_name = "S", value_parser = positive)]
     ts: Option<f64>,
@@ -54,7 +54,7 @@ pub(super) struct TuneArguments {
 
 /// `command` is what was typed.
 pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Result<(), Failure> {
-    let Some(method) = arguments.method.one() else { return compare(arguments, json) };
+    let Some(method) = arguments.method.0 else { return compare(arguments, json) };
     let mut problems = arguments.wish.idle(method);
     let target = |option: &str, path: &Option<PathBuf>, problems: &mut Vec<Problem>| {
         let checked = path.as_ref().map(|path| arguments.record.target(option, path, arguments.force));

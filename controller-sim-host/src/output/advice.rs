@@ -90,6 +90,7 @@ fn wrapped(words: &str, width: usize) -> Vec<String> {
 
 #[derive(Serialize)]
 struct Comparison<'a> {
+    version: &'static str,
     plant: String,
     ts: f64,
     period: String,
@@ -112,6 +113,7 @@ struct Entry<'a> {
 #[must_use]
 pub fn advice_json(advice: &Advice) -> String {
     text(&Comparison {
+        version: env!("CARGO_PKG_VERSION"),
         plant: advice.plant.to_string(),
         ts: advice.ts,
         period: advice.on_the_period(),

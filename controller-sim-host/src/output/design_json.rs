@@ -8,6 +8,7 @@ use serde::Serialize;
 
 #[derive(Serialize)]
 pub(super) struct Designed<'a> {
+    version: &'static str,
     method: &'static str,
     source: &'static str,
     plant: String,
@@ -21,9 +22,8 @@ pub(super) struct Designed<'a> {
     observer: Option<Observer>,
     adrc: Option<Adrc>,
     robustness: Robustness,
-    sampled: Robustness,
     noise: Noise,
-    sampled_noise: SampledNoise,
+    discrete: Discrete,
     predicted: Predicted,
     warnings: Vec<String>,
     saved: Option<&'a str>,
@@ -82,6 +82,13 @@ pub(super) struct Robustness {
     gm: f64,
     pm_deg: f64,
     delay_margin: f64,
+}
+
+/// Of the law that runs.
+#[derive(Serialize)]
+struct Discrete {
+    robustness: Robustness,
+    noise: SampledNoise,
 }
 
 #[derive(Serialize)]
@@ -150,6 +157,7 @@ impl<'a> Designed<'a> {
             Law::Adrc(adrc) => (None, None, None, Some(adrc)),
         };
         Self {
+            version: env!("CARGO_PKG_VERSION"),
             method: made.method.name(),
             source: made.method.source(),
             plant: made.plant.to_string(),
@@ -169,9 +177,11 @@ impl<'a> Designed<'a> {
             observer: observer.map(Into::into),
             adrc: adrc.map(Into::into),
             robustness: (&made.robustness).into(),
-            sampled: (&made.sampled.margins).into(),
             noise: Noise { kpidn: made.noise.kpidn, kden: made.noise.kden, an: made.noise.an },
-            sampled_noise: (&made.sampled.noise).into(),
+            discrete: Discrete {
+                robustness: (&made.sampled.margins).into(),
+                noise: (&made.sampled.noise).into(),
+            },
             predicted: Predicted {
                 ie_setpoint: made.predicted.ie_setpoint,
                 ie_load: made.predicted.ie_load,

@@ -98,6 +98,7 @@ pub fn tune_table(tuning: &Tuning<'_>) -> String {
 
 #[derive(Serialize)]
 struct Object<'a> {
+    version: &'static str,
     identified: Identified<'a>,
     design: Designed<'a>,
     worst_residual: f64,
@@ -126,6 +127,7 @@ impl From<&Metrics> for Loop {
 #[must_use]
 pub fn tune_json(tuning: &Tuning<'_>, saved: Option<&str>, report: Option<&str>) -> String {
     text(&Object {
+        version: env!("CARGO_PKG_VERSION"),
         identified: Identified::new(&tuning.finding, &[]),
         design: Designed::new(tuning.made, saved),
         worst_residual: tuning.worst_residual,

@@ -152,7 +152,7 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
     add("set-point follows y", none(), false, &|c| c.config.setpoint.track.then(|| "yes".to_owned()));
     add("error deadband", y.clone(), false, &|c| set(c.config.deadband, 0.0));
     let estimator = |c: &ControllerSpec, value: fn(&EstimatorConfig) -> f64| match &c.compensator {
-        CompensatorSpec::Estimator(e) => Some(show(value(e))),
+        CompensatorSpec::Estimator(e) => Some(gain(value(e))),
         _ => None,
     };
     add("estimator: gain", format!("{y}/{u}"), false, &|c| estimator(c, |e| e.gain));
@@ -166,7 +166,7 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
         _ => None,
     };
     add("observer: model", format!("{y}/{u}"), false, &|c| observer(c, |o| Some(model(&o.model))));
-    add("observer: alpha", "s".to_owned(), false, &|c| observer(c, |o| Some(show(o.alpha))));
+    add("observer: alpha", "s".to_owned(), false, &|c| observer(c, |o| Some(gain(o.alpha))));
     add("observer: order", none(), false, &|c| observer(c, |o| o.order.map(|order| order.to_string())));
     add("measurement valid", y.clone(), false, &|c| {
         let (lo, hi) = (c.config.measurement_lo, c.config.measurement_hi);

@@ -11,22 +11,11 @@ use crate::margins::Margins;
 /// All margins but the delay margin, which is left infinite.
 pub(super) fn extremes(held: &DiscreteLoop, sweep: &Sweep) -> Margins {
     let per_second = 1.0 / held.ts();
-    let (theta_ms, ms) = sweep.peak(held, |p| p.sensitivity().abs());
-    let (theta_mt, mt) = sweep.peak(held, |p| p.complementary().abs());
-    let mut margins = Margins {
-        ms,
-        omega_ms: theta_ms * per_second,
-        mt,
-        omega_mt: theta_mt * per_second,
-        gm: f64::INFINITY,
-        omega_gm: None,
-        gm_low: 0.0,
-        omega_gm_low: None,
-        pm_deg: f64::INFINITY,
-        omega_pm: None,
-        delay_margin: f64::INFINITY,
-        omega_delay: None,
-    };
+    let in_seconds = |(theta, height): (f64, f64)| (theta * per_second, height);
+    let mut margins = Margins::of_peaks(
+        in_seconds(sweep.peak(held, |p| p.sensitivity().abs())),
+        in_seconds(sweep.peak(held, |p| p.complementary().abs())),
+    );
     for (theta, real) in real_axis(held, sweep) {
         let factor = -1.0 / real;
         if factor > 1.0 && factor < margins.gm {
