@@ -63,7 +63,7 @@ fn list(areas: &Areas) -> String {
 }
 
 /// Every parameter with its unit.
-pub(super) fn parameters(law: &Law) -> Vec<(&'static str, String)> {
+fn parameters(law: &Law) -> Vec<(&'static str, String)> {
     let mut rows = Vec::new();
     let mut row = |name: &'static str, value: f64, unit: &str| {
         rows.push((name, format!("{} {unit}", show_short(value)).trim_end().to_owned()));

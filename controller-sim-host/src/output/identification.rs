@@ -36,14 +36,22 @@ impl Identification<'_> {
         let found = self.found;
         match found.chosen.name() {
             "fit" => format!(
-                "areas of the fitted model: K_P from the raw areas is uncertain by {}, from the fit by {}",
-                per_cent(found.raw_kp_spread),
+                "areas of the fitted model, with a standard deviation of K_P of {} ({} with the raw areas, the integrals of \
+                 the record itself)",
+                per_cent(found.kp_spread),
+                per_cent(found.raw_kp_spread)
+            ),
+            _ => format!(
+                "raw areas, the integrals of the record itself, with a standard deviation of K_P of {}",
                 per_cent(found.kp_spread)
             ),
-            _ => {
-                format!("raw areas: K_P that follows from them is uncertain by {}", per_cent(found.kp_spread))
-            }
         }
+    }
+
+    /// The warnings; which areas were chosen, and why, is no fault and stands in [`choice`](Self::choice).
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
+        let is_choice = |text: &String| text.contains("areas of the fitted model are");
+        self.found.warnings.iter().map(ToString::to_string).filter(move |text| !is_choice(text))
     }
 
     /// The model as an expression that every command takes.
@@ -62,11 +70,7 @@ impl Identification<'_> {
 
 /// A share as a percentage.
 pub(crate) fn per_cent(share: f64) -> String {
-    if share.is_finite() {
-        format!("{} %", format_number(100.0 * share))
-    } else {
-        "more than all of it".to_owned()
-    }
+    if share <= 1.0 { format!("{} %", format_number(100.0 * share)) } else { "more than 100 %".to_owned() }
 }
 
 /// The process as a text for people.
@@ -132,9 +136,10 @@ pub fn identify_table(finding: &Identification<'_>) -> String {
     if let Some(expression) = finding.expression() {
         text.push_str(&format!("plant \"{expression}\"\n"));
     }
-    if !found.warnings.is_empty() {
+    let warnings: Vec<String> = finding.warnings().collect();
+    if !warnings.is_empty() {
         text.push_str("\nwarnings:\n");
-        for warning in &found.warnings {
+        for warning in &warnings {
             text.push_str(&format!("  {warning}\n"));
         }
     }

@@ -113,7 +113,7 @@ fn title(at: f64, kind: EventKind) -> String {
         EventKind::Disturbance => "disturbance",
         EventKind::Other => "event",
     };
-    format!("{what} at {at} s")
+    format!("{what} at {} s", crate::scenario::show_short(at))
 }
 
 pub(crate) fn values(m: &Metrics) -> [f64; 6] {
@@ -149,6 +149,8 @@ pub(crate) fn rounded_numbers(expression: &str) -> String {
             !(c.is_ascii_digit() || c == '.' || c == 'e' || (after_e && matches!(c, '-' | '+')))
         };
         let end = number.char_indices().find(|&at| is_part(at)).map_or(number.len(), |(i, _)| i);
+        // A point at the end is that of the sentence.
+        let end = number[..end].trim_end_matches(['.', 'e', '+', '-']).len();
         let (number, after) = number.split_at(end);
         text.push_str(before);
         text.push_str(&number.parse().map_or_else(|_| number.to_owned(), crate::scenario::show_short));
@@ -195,6 +197,7 @@ mod tests {
         assert_eq!(rounded_numbers(long), "1.4*exp(-5.97607*s)/(1+123.007*s+3.16462e-7*s^2)");
         let plain = "exp(-0.2*s)/((1+0.2*s)*(1+s)^4)";
         assert_eq!(rounded_numbers(plain), plain);
+        assert_eq!(rounded_numbers("from 1.23456789e-5 to 2."), "from 1.23457e-5 to 2.");
     }
 
     #[test]

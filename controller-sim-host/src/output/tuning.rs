@@ -1,6 +1,6 @@
 //! A tuned loop: text for people, JSON for programs.
 
-use super::design::{design_table, parameters};
+use super::design::design_table;
 use super::design_json::Designed;
 use super::identification::{Identification, Object as Identified, identify_table};
 use super::json::text;
@@ -30,40 +30,17 @@ impl Tuning<'_> {
         self.made.warnings.iter().map(ToString::to_string).chain(self.warnings.iter().cloned()).collect()
     }
 
-    /// What goes into a commissioning file, in groups: names, values with units.
-    pub(crate) fn groups(&self) -> [(&'static str, Vec<(String, String)>); 3] {
-        let made = self.made;
-        let own = |rows: Vec<(&str, String)>| {
-            rows.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
-        };
-        let mut controller = vec![("sampling period", format!("{} s", made.ts))];
-        if made.latency > 0.0 {
-            controller.push(("latency", format!("{} s", made.latency)));
-        }
-        controller.extend(parameters(&made.law));
-        let (margins, number) = (&made.sampled.margins, format_number);
+    /// What the simulation gave: names, values and their units.
+    pub(crate) fn simulated(&self, unit: &str) -> [(&'static str, String, String); 4] {
+        let y = if unit.trim().is_empty() { "y" } else { unit.trim() };
         let [setpoint, load] = &self.events;
+        let area = format!("{y} s");
+        let number = format_number;
         [
-            ("Parameters", own(controller)),
-            (
-                "Robustness, sampled",
-                own(vec![
-                    ("Ms", number(margins.ms)),
-                    ("gain margin", number(margins.gm)),
-                    ("phase margin", format!("{} deg", number(margins.pm_deg))),
-                    ("delay margin", format!("{} s", number(margins.delay_margin))),
-                    ("noise, std(u)/std(n)", format!("{} u/y", number(made.sampled.noise.white))),
-                ]),
-            ),
-            (
-                "Simulated",
-                own(vec![
-                    ("IAE of the set-point step", format!("{} y s", number(setpoint.iae))),
-                    ("IAE of the load step", format!("{} y s", number(load.iae))),
-                    ("largest error of the load step", format!("{} y", number(load.e_max))),
-                    ("largest residual, second-order model", format!("{} y", number(self.worst_residual))),
-                ]),
-            ),
+            ("IAE of the set-point step", number(setpoint.iae), area.clone()),
+            ("IAE of the load step", number(load.iae), area),
+            ("largest error of the load step", number(load.e_max), y.to_owned()),
+            ("largest residual, second-order model", number(self.worst_residual), y.to_owned()),
         ]
     }
 }

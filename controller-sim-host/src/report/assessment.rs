@@ -1,7 +1,7 @@
 //! The page of a load-response experiment: verdict, picture, features beside their ranges, what to change.
 
 use super::drawing::pixel;
-use super::experiment::{Picture, Signals, draw};
+use super::experiment::{Picture, Signals, downwards, draw};
 use super::legend::{area, line};
 use super::page::{document, notes, scroll};
 use crate::output::table::format_number;
@@ -62,7 +62,7 @@ pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
     vec![
         line(
             "dip",
-            "lowest value after the first peak, in first peaks",
+            "farthest return after the first peak, in first peaks; negative: beyond the mean before the step",
             features.dip,
             format!("{:.2} to {:.2}", dip.0, dip.1),
             within(features.dip, dip),
@@ -76,12 +76,12 @@ pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
         ),
         line(
             "r3",
-            "highest value after the dip, in first peaks",
+            "largest deviation after the dip, in first peaks",
             features.r3,
             format!("at most {r3:.2}"),
             within(features.r3, (f64::NEG_INFINITY, r3)),
         ),
-        line("p1", "first peak [y]", Some(features.p1), String::new(), None),
+        line("p1", "first peak, size [y]", Some(features.p1), String::new(), None),
         line("t1", "its time from the step [s]", Some(features.t1), String::new(), None),
         line("sigma", "noise of a sample [y]", Some(features.sigma), String::new(), None),
     ]
@@ -113,7 +113,8 @@ pub fn assessment_page(experiment: &Experiment<'_>, command: &str) -> String {
             (notes(&assessment.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()))
             @if let Some(marks) = &assessment.marks {
                 h2 id="response" { "Response" }
-                (picture(&draw(&experiment.signals, marks, &experiment.acceptance), experiment))
+                @let sigma = assessment.features.map_or(0.0, |features| features.sigma);
+                (picture(&draw(&experiment.signals, marks, &experiment.acceptance, sigma), experiment))
             }
             @if let Some(features) = &assessment.features {
                 h2 id="features" { "Features" }
@@ -148,7 +149,7 @@ fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
                 (line("level", "mean before the step"))
                 (area("window", "output held by hand"))
                 @if picture.target { (area("target", "where the dip belongs")) }
-                @if picture.target { (line("bound", "highest P3")) }
+                @if picture.target { (line("bound", "largest P3")) }
             }
             svg class="canvas" height=(pixel(picture.height)) role="img" aria-labelledby="figure-1-title figure-1-desc" {
                 title id="figure-1-title" {
@@ -164,6 +165,10 @@ fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
                     " at " (format_number(marks.step)) " s"
                     @if let Some(auto) = marks.auto { "; back in automatic at " (format_number(auto)) " s" }
                     "."
+                }
+                @if marks.is_some_and(downwards) { " The first peak points down here, and so the dip points up." }
+                @if picture.hidden {
+                    " What differs from the mean before the step by less than two standard deviations of the noise is not marked."
                 }
                 @if picture.target {
                     " Of a near-optimal loop the dip lies in the box, and the third peak P3 is at most "
@@ -184,6 +189,9 @@ fn described(experiment: &Experiment<'_>) -> String {
         format_number(features.p1),
         format_number(features.t1)
     );
+    if experiment.assessment.marks.as_ref().is_some_and(downwards) {
+        text.push_str(" It points down.");
+    }
     if let (Some(dip), Some(t_ratio), Some(r3)) = (features.dip, features.t_ratio, features.r3) {
         text.push_str(&format!(
             " Dip of {dip:.3} first peaks at {t_ratio:.2} times that time, third peak of {r3:.3}."
@@ -226,8 +234,10 @@ fn about() -> Markup {
         p {
             "The output was stepped by hand while the loop was at rest, and the controller switched back to automatic. To the "
             "loop this is a step of the load. Under the PI controller with the least integral of the absolute error (IAE) the "
-            "response of nearly every process with dead time has one shape: a first peak P1, a small dip a little after twice its "
-            "time, a small third peak P3. A deep dip means a short integral time, a high P3 or an early dip a high gain; no dip, or "
+            "response of nearly every process with dead time has one shape: a first peak P1, a little after twice its time a small "
+            "dip to the other side of the mean before the step, then a small third peak P3 to the side of the first. All three "
+            "are counted from that mean in the direction of the first peak: where a larger output lowers the measurement, or "
+            "the step is a step down, P1 and P3 point down and the dip points up. A deep dip means a short integral time, a high P3 or an early dip a high gain; no dip, or "
             "one before the measurement is back, a long integral time or a low gain. A loop with all three in their "
             "ranges has an IAE within some 15 % of the best."
         }

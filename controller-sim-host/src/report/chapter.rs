@@ -3,6 +3,7 @@
 use super::describe::{description, title};
 use super::drawing::{draw, loops, pixel, shown};
 use super::legend::{entries, sample};
+use super::panels::estimate_from;
 use super::{Chapter, parameters, tables, words};
 use crate::output::table::remarks;
 use crate::scenario::{ControllerSpec, Fault, show_short};
@@ -131,6 +132,11 @@ fn picture(id: &str, chapter: &Chapter<'_>) -> Markup {
                     " Each column stands for "
                     (loops.first().map_or(1, |l| l.record.samples))
                     " samples and covers all of their values."
+                }
+                @if let Some(at_rest) = estimate_from(chapter.scenario, &loops) {
+                    " The disturbance is drawn without that of the operating point, d(0) = "
+                    (format!("{} {}", words::number(at_rest), words::unit(&chapter.scenario.units.u)).trim_end())
+                    ": the estimate d_hat is counted from the beginning of the run, too."
                 }
                 @if !chapter.scenario.events.is_empty() { " The numbers above are those of the events." }
             }

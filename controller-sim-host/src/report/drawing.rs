@@ -21,7 +21,9 @@ pub(super) const COLUMNS: f64 = 1000.0;
 /// Height of a line of event numbers \[px\].
 const MARK: f64 = 18.0;
 /// Height of a panel's title \[px\].
-const TITLE: f64 = 27.0;
+const TITLE: f64 = 30.0;
+/// Height of the numbers and the name of the axis of time \[px\].
+pub(super) const BELOW: f64 = 40.0;
 /// Height of a line with the name of a controller \[px\].
 const NAME: f64 = 19.0;
 /// Height of a band of modes and of one of status \[px\].
@@ -88,7 +90,7 @@ pub(super) fn draw(chapter: &Chapter<'_>, loops: &[Loop<'_>]) -> Drawing {
         y += height_of(one);
     }
     let end = y;
-    y += 34.0;
+    y += BELOW;
     Drawing {
         content: html! {
             (draw_marks(&marks, end))
@@ -102,17 +104,18 @@ pub(super) fn draw(chapter: &Chapter<'_>, loops: &[Loop<'_>]) -> Drawing {
 fn draw_panel(panel: &Panel<'_>, loops: &[Loop<'_>], time: (f64, f64), axis: &Axis, top: f64) -> Markup {
     let most = (panel.height / 33.0) as usize;
     let values = Axis::of_values(panel.range(), most.max(2));
-    let share = |value: f64| values.share(value);
     let bottom = top + panel.height;
     let Some(record) = loops.first().map(|l| l.record) else { return html! {} };
-    let plane = Plane { record, time, share: &share, size: (COLUMNS, panel.height) };
+    let size = (COLUMNS, panel.height);
+    let plane = Plane { record, time, share: &|value| values.share(value), size };
     html! {
         (grid(&values, axis, (top, panel.height), panel.title, &panel.unit))
         svg class="p" y=(pixel(top)) width="100%" height=(pixel(panel.height))
             viewBox={ "0 0 " (COLUMNS) " " (panel.height) } preserveAspectRatio="none" {
             @for level in &panel.levels { (draw_level(level, &plane)) }
             @for trace in &panel.traces {
-                @let paths = plane.draw(trace.envelope, trace.between);
+                @let share = |value: f64| values.share(value - trace.origin);
+                @let paths = Plane { record, time, share: &share, size }.draw(trace.envelope, trace.between);
                 @if !paths.area.is_empty() { path class={ "a " (tint(trace.look)) } d=(paths.area) {} }
                 path class={ "l " (look(trace.look)) } d=(paths.line) {}
             }
@@ -134,7 +137,7 @@ pub(super) fn grid(values: &Axis, axis: &Axis, (top, height): (f64, f64), title:
                 line x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(top)) y2=(pixel(bottom)) {}
             }
         }
-        text class="title" x=(pixel(-LEFT)) y=(pixel(top - 9.0)) { (title) (values.unit(unit)) }
+        text class="title" x=(pixel(-LEFT)) y=(pixel(top - 11.0)) { (title) (values.unit(unit)) }
         @for tick in &values.ticks {
             text class="n" x="-7" y=(pixel(bottom - tick.share * height + 4.0)) { (tick.label) }
         }
@@ -194,7 +197,7 @@ pub(super) fn below(axis: &Axis, y: f64, name: &str, unit: &str) -> Markup {
         @for share in &axis.between {
             line class="axis" x1=(percent(*share)) x2=(percent(*share)) y1=(pixel(y)) y2=(pixel(y + 2.5)) {}
         }
-        text class="title t" x="50%" y=(pixel(y + 31.0)) { (name) (axis.unit(unit)) }
+        text class="title t" x="50%" y=(pixel(y + 36.0)) { (name) (axis.unit(unit)) }
     }
 }
 

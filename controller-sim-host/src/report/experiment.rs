@@ -1,6 +1,6 @@
 //! The picture of a load-response experiment: the response with its features, the output below it.
 
-use super::drawing::{percent, pixel, time_axis};
+use super::drawing::{BELOW, percent, pixel, time_axis};
 use super::frame::{Frame, Line, TITLE, range};
 use super::path::Between;
 use super::scale::Axis;
@@ -16,6 +16,8 @@ const SPAN: f64 = 17.0;
 /// What is shown before and after the step, in times of the first peak.
 const BEFORE: f64 = 1.0;
 const AFTER: f64 = 6.0;
+/// Smallest feature that is marked, in standard deviations of the noise.
+const NOISE: f64 = 2.0;
 /// Room for the name of a mark, as a share of the range.
 const ROOM: f64 = 0.09;
 
@@ -42,10 +44,16 @@ pub(super) struct Picture {
     pub(super) time: (f64, f64),
     /// It shows where a near-optimal loop has its dip.
     pub(super) target: bool,
+    /// A dip or a third peak is so small that it is not marked.
+    pub(super) hidden: bool,
 }
 
 /// Draws the part of the record that tells something.
-pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance) -> Picture {
+/// `sigma` is the noise of a sample: what it alone could have drawn is not marked.
+pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance, sigma: f64) -> Picture {
+    let stands_out = |place: &Place| (place.y - marks.baseline).abs() >= NOISE * sigma;
+    let (dip, third) = (marks.dip.filter(stands_out), marks.third.filter(stands_out));
+    let hidden = (dip, third) != (marks.dip, marks.third);
     let time = shown(signals, marks);
     let axis = Axis::of_time(time.0, time.1, 9);
     let seen = |t: f64| t >= time.0 && t <= time.1;
@@ -65,10 +73,8 @@ pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance
     let values = if marks.peak.is_some() { values.map(room) } else { values };
 
     let response = Frame::new(&axis, values, TITLE, RESPONSE);
-    let spans: Vec<(&str, Place)> = [("t1", marks.peak), ("t_dip", marks.dip)]
-        .into_iter()
-        .filter_map(|(name, p)| Some((name, p?)))
-        .collect();
+    let spans: Vec<(&str, Place)> =
+        [("t1", marks.peak), ("t_dip", dip)].into_iter().filter_map(|(name, p)| Some((name, p?))).collect();
     let gap = spans.len() as f64 * SPAN + 4.0;
     let below = Frame::new(&axis, range(input.iter().map(|p| p.1)), response.bottom() + gap + TITLE, OUTPUT);
     let end = below.bottom() + 6.0;
@@ -87,7 +93,7 @@ pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance
             line("c0", &smoothed, Between::Moves),
         ]))
         (response.level("level", time, marks.baseline, "mean before the step"))
-        @for (name, place) in [("P1", marks.peak), ("dip", marks.dip), ("P3", marks.third)] {
+        @for (name, place) in [("P1", marks.peak), ("dip", dip), ("P3", third)] {
             @if let Some(place) = place.filter(|place| seen(place.t)) {
                 (mark(&response, name, place, outwards(marks, place)))
             }
@@ -100,7 +106,7 @@ pub(super) fn draw(signals: &Signals<'_>, marks: &Marks, acceptance: &Acceptance
         (below.lines(&[line("c0", &input, Between::Held)]))
         (time_axis(&axis, end))
     };
-    Picture { content, height: end + 34.0, time, target: target.is_some() }
+    Picture { content, height: end + BELOW, time, target: target.is_some(), hidden }
 }
 
 /// From a peak time before the step until the response has told all.
@@ -117,7 +123,7 @@ fn shown(signals: &Signals<'_>, marks: &Marks) -> (f64, f64) {
 struct Target {
     t: (f64, f64),
     y: (f64, f64),
-    /// The highest that the third peak is.
+    /// The largest that the third peak is.
     third: f64,
 }
 
@@ -132,9 +138,14 @@ fn target(marks: &Marks, acceptance: &Acceptance) -> Option<Target> {
     })
 }
 
+/// Whether the load lowers the measurement: the picture is upside down.
+pub(super) fn downwards(marks: &Marks) -> bool {
+    marks.peak.is_some_and(|peak| peak.y < marks.baseline)
+}
+
 /// Whether the name of a mark belongs above it: outside of the curve.
 fn outwards(marks: &Marks, place: Place) -> bool {
-    let rises = marks.peak.is_none_or(|peak| peak.y >= marks.baseline);
+    let rises = !downwards(marks);
     let is_dip = marks.dip.is_some_and(|dip| dip.t == place.t);
     rises != is_dip
 }
@@ -148,11 +159,11 @@ fn manual(frame: &Frame<'_>, marks: &Marks, end: f64) -> Markup {
     }
 }
 
-/// Where the dip of a near-optimal loop is, and how high its third peak is at most.
+/// Where the dip of a near-optimal loop is, and how large its third peak is at most.
 fn near_optimal(frame: &Frame<'_>, target: &Target) -> Markup {
     html! {
         (frame.area("target", target.t, target.y, "where the dip of a near-optimal loop is"))
-        (frame.level("bound", (target.t.1, f64::MAX), target.third, "highest third peak of a near-optimal loop"))
+        (frame.level("bound", (target.t.1, f64::MAX), target.third, "largest third peak of a near-optimal loop"))
     }
 }
 

@@ -6,7 +6,7 @@ use super::scale::Axis;
 use maud::{Markup, html};
 
 /// Height of a panel's title \[px\].
-pub(super) const TITLE: f64 = 27.0;
+pub(super) const TITLE: f64 = 30.0;
 /// Height of a line of names \[px\].
 pub(super) const NAME: f64 = 15.0;
 /// Width of a character of a name \[px\], and of the picture on a telephone.

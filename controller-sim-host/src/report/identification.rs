@@ -1,13 +1,13 @@
 //! The page of an identified process.
 
-use super::drawing::{pixel, time_axis};
+use super::drawing::{BELOW, pixel, time_axis};
 use super::frame::{Frame, Line, TITLE, moments, range};
 use super::legend;
 use super::page::{document, notes, scroll};
 use super::path::Between;
 use super::scale::Axis;
 use crate::output::Identification;
-use crate::output::table::format_number;
+use crate::output::table::{format_number, rounded_numbers};
 use maud::{Markup, html};
 
 /// Height of the panels \[px\].
@@ -35,7 +35,7 @@ pub(super) fn sections(finding: &Identification<'_>) -> Markup {
         h2 id="record" { "Record and model" }
         (picture(finding, simulated.as_deref()))
         h2 id="areas" { "Areas" }
-        p { "Chosen: " (finding.choice()) "." }
+        p { "Used: " (finding.choice()) "." }
         (areas(finding))
         h2 id="model" { "Model" }
         (model(finding))
@@ -48,7 +48,7 @@ fn remarks(finding: &Identification<'_>) -> Vec<String> {
         .remarks
         .iter()
         .map(|remark| format!("line {}: {}", remark.place(finding.source.text).line, remark.message));
-    finding.found.warnings.iter().map(ToString::to_string).chain(of_log).collect()
+    finding.warnings().map(|text| rounded_numbers(&text)).chain(of_log).collect()
 }
 
 /// The units of the areas, in those of input and output.
@@ -64,7 +64,7 @@ fn areas(finding: &Identification<'_>) -> Markup {
             thead {
                 tr {
                     th scope="col" class="text" { "area" }
-                    @for title in ["chosen", "\u{b1} (90 %)", "raw", "\u{b1} (90 %)"] {
+                    @for title in ["used", "\u{b1} (90 %)", "raw", "\u{b1} (90 %)"] {
                         th scope="col" { (title) }
                     }
                 }
@@ -169,7 +169,7 @@ fn picture(finding: &Identification<'_>, simulated: Option<&[f64]>) -> Markup {
                 (legend::area("rest", "at rest: baseline and tail"))
                 (legend::line("level", "their means"))
             }
-            svg class="canvas" height=(pixel(end + 34.0)) role="img" aria-labelledby="record-title record-desc" {
+            svg class="canvas" height=(pixel(end + BELOW)) role="img" aria-labelledby="record-title record-desc" {
                 title id="record-title" {
                     "Output, input and residual from " (format_number(time.0)) " s to " (format_number(time.1)) " s"
                 }

@@ -1,7 +1,7 @@
 //! A sweep at one glance: the metric of each controller against the value that is swept.
 
 use super::Chapter;
-use super::drawing::{controller, percent, pixel};
+use super::drawing::{BELOW, controller, percent, pixel};
 use super::scale::Axis;
 use super::tables::unit;
 use super::words;
@@ -12,8 +12,8 @@ use maud::{Markup, html};
 /// Height of the picture without its axis \[px\].
 const HEIGHT: f64 = 220.0;
 /// Space above and below \[px\].
-const TOP: f64 = 24.0;
-const BOTTOM: f64 = 36.0;
+const TOP: f64 = 30.0;
+const BOTTOM: f64 = BELOW;
 
 /// The runs of one file over one key.
 #[derive(Debug)]
@@ -133,11 +133,11 @@ impl Sweep<'_> {
                 @for tick in &values.ticks { line x1="0" x2="100%" y1=(pixel(y(tick.share))) y2=(pixel(y(tick.share))) {} }
                 @for tick in &keys.ticks { line x1=(percent(tick.share)) x2=(percent(tick.share)) y1=(pixel(TOP)) y2=(pixel(bottom)) {} }
             }
-            text class="title" x=(pixel(-super::drawing::LEFT)) y="14" { "IAE" (values.unit(unit)) }
+            text class="title" x=(pixel(-super::drawing::LEFT)) y=(pixel(TOP - 11.0)) { "IAE" (values.unit(unit)) }
             @for tick in &values.ticks { text class="n" x="-7" y=(pixel(y(tick.share) + 4.0)) { (tick.label) } }
             @for tick in &keys.ticks { text class="t" x=(percent(tick.share)) y=(pixel(bottom + 17.0)) { (tick.label) } }
             line class="axis" x1="0" x2="100%" y1=(pixel(bottom)) y2=(pixel(bottom)) {}
-            text class="title t" x="50%" y=(pixel(bottom + 32.0)) { (words::cut(self.key, 40)) (keys.unit("")) }
+            text class="title t" x="50%" y=(pixel(bottom + 36.0)) { (words::cut(self.key, 40)) (keys.unit("")) }
             @for index in 0..count {
                 @for pair in places(index).windows(2) {
                     line class={ "l " (controller(index)) }

@@ -2,6 +2,7 @@
 
 use super::Chapter;
 use super::chapter;
+use super::glossary;
 use super::overview::{Sweep, sweeps};
 use super::standalone::STYLE;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -52,6 +53,7 @@ pub(super) fn document(kind: &str, heading: &str, content: &Markup, command: &st
                     h1 { (heading) }
                 }
                 (content)
+                (glossary::section(&content.0))
                 footer {
                     h2 id="command" { "How this page was made" }
                     (scroll("command", &html! { pre { code { (command) } } }))

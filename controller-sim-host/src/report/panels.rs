@@ -50,6 +50,15 @@ pub(super) struct Trace<'a> {
     pub(super) envelope: &'a Envelope,
     pub(super) between: Between,
     pub(super) look: Look,
+    /// What is taken off the signal before it is drawn.
+    pub(super) origin: f64,
+}
+
+impl Trace<'_> {
+    /// The smallest and the largest value that is drawn.
+    fn range(&self) -> Option<(f64, f64)> {
+        self.envelope.range().map(|(lo, hi)| (lo - self.origin, hi - self.origin))
+    }
 }
 
 /// A limit while it holds.
@@ -81,7 +90,7 @@ impl Panel<'_> {
         let join = |a: Option<(f64, f64)>, (lo, hi): (f64, f64)| {
             Some(a.map_or((lo, hi), |(l, h)| (l.min(lo), h.max(hi))))
         };
-        let signals = self.traces.iter().filter_map(|t| t.envelope.range()).fold(None, join);
+        let signals = self.traces.iter().filter_map(Trace::range).fold(None, join);
         let (lo, hi) = self.levels.iter().map(|level| (level.value, level.value)).fold(signals, join)?;
         let missing = (self.least - (hi - lo)).max(0.0);
         Some((lo - missing / 2.0, hi + missing / 2.0))
@@ -101,17 +110,26 @@ pub(super) fn panels<'a>(scenario: &'a Scenario, loops: &[Loop<'a>]) -> Vec<Pane
     let disturbed = scenario.initial.disturbance != 0.0
         || scenario.events.iter().flat_map(|e| &e.changes).any(|c| matches!(c, Change::Disturbance(_)));
     if disturbed || !compensated.is_empty() {
-        let mut traces = references(loops, |record| &record.d);
-        traces.extend(compensated.iter().map(|l| Trace {
-            envelope: &l.record.d_hat,
-            between: Between::Held,
-            look: Look::Controller(l.index),
-        }));
-        // The estimate begins at 0 wherever the loop rests.
-        let title = match (compensated.is_empty(), scenario.initial.disturbance == 0.0) {
+        let mut traces: Vec<Trace<'a>> = compensated
+            .iter()
+            .map(|l| Trace {
+                envelope: &l.record.d_hat,
+                between: Between::Held,
+                look: Look::Controller(l.index),
+                origin: 0.0,
+            })
+            .collect();
+        // Above the estimates, whose noise would cover it.
+        let origin = estimate_from(scenario, loops);
+        traces.extend(
+            references(loops, |record| &record.d)
+                .into_iter()
+                .map(|trace| Trace { origin: origin.unwrap_or(0.0), ..trace }),
+        );
+        let title = match (compensated.is_empty(), origin) {
             (true, _) => "Disturbance d",
-            (false, true) => "Disturbance d, estimate d_hat",
-            (false, false) => "Disturbance d, estimated change d_hat",
+            (false, None) => "Disturbance d, estimate d_hat",
+            (false, Some(_)) => "Disturbance d \u{2212} d(0), estimate d_hat",
         };
         list.push(Panel { title, unit: u.clone(), height: 120.0, traces, levels: Vec::new(), least });
     }
@@ -120,12 +138,20 @@ pub(super) fn panels<'a>(scenario: &'a Scenario, loops: &[Loop<'a>]) -> Vec<Pane
             envelope: &l.record.u_f,
             between: Between::Held,
             look: Look::Controller(l.index),
+            origin: 0.0,
         };
         let traces = compensated.iter().map(trace).collect();
         let title = "Output of the disturbance block u_f";
         list.push(Panel { title, unit: u, height: 100.0, traces, levels: Vec::new(), least });
     }
     list
+}
+
+/// The disturbance of the operating point, when there are estimates: they begin at 0 wherever the loop rests, and the
+/// disturbance is drawn from there, too.
+pub(super) fn estimate_from(scenario: &Scenario, loops: &[Loop<'_>]) -> Option<f64> {
+    let at_rest = scenario.initial.disturbance;
+    (at_rest != 0.0 && loops.iter().any(Loop::has_compensator)).then_some(at_rest)
 }
 
 /// Whether the measurement is something else than the plant's output.
@@ -147,6 +173,7 @@ fn output<'a>(scenario: &'a Scenario, loops: &[Loop<'a>], unit: String) -> Panel
             envelope: &l.record.y,
             between: Between::Held,
             look: Look::Faint(l.index),
+            origin: 0.0,
         }));
     }
     traces.extend(references(loops, |record| &record.r));
@@ -154,6 +181,7 @@ fn output<'a>(scenario: &'a Scenario, loops: &[Loop<'a>], unit: String) -> Panel
         envelope: &l.record.output,
         between: Between::Moves,
         look: Look::Controller(l.index),
+        origin: 0.0,
     }));
     Panel {
         title: "Plant output y, set-point r",
@@ -169,12 +197,9 @@ fn output<'a>(scenario: &'a Scenario, loops: &[Loop<'a>], unit: String) -> Panel
 fn inner<'a>(loops: &[Loop<'a>]) -> Option<Panel<'a>> {
     let mut traces = Vec::new();
     for (l, record) in loops.iter().filter_map(|l| l.inner.map(|record| (l, record))) {
-        traces.push(Trace { envelope: &record.r, between: Between::Held, look: Look::Asked(l.index) });
-        traces.push(Trace {
-            envelope: &record.output,
-            between: Between::Moves,
-            look: Look::Controller(l.index),
-        });
+        let trace = |envelope, between, look| Trace { envelope, between, look, origin: 0.0 };
+        traces.push(trace(&record.r, Between::Held, Look::Asked(l.index)));
+        traces.push(trace(&record.output, Between::Moves, Look::Controller(l.index)));
     }
     let title = "Inner loop: output, set-point (thin)";
     (!traces.is_empty()).then(|| Panel {
@@ -190,7 +215,7 @@ fn inner<'a>(loops: &[Loop<'a>]) -> Option<Panel<'a>> {
 fn control<'a>(scenario: &'a Scenario, loops: &[Loop<'a>], unit: String) -> Panel<'a> {
     let mut traces: Vec<Trace<'a>> = Vec::new();
     for l in loops {
-        let held = |envelope, look| Trace { envelope, between: Between::Held, look };
+        let held = |envelope, look| Trace { envelope, between: Between::Held, look, origin: 0.0 };
         if shows_applied(l) {
             traces.push(held(&l.record.applied, Look::Applied(l.index)));
         }
@@ -215,7 +240,7 @@ fn references<'a>(loops: &[Loop<'a>], signal: impl Fn(&'a Record) -> &'a Envelop
             different.push(envelope);
         }
     }
-    let trace = |envelope| Trace { envelope, between: Between::Held, look: Look::Reference };
+    let trace = |envelope| Trace { envelope, between: Between::Held, look: Look::Reference, origin: 0.0 };
     different.into_iter().map(trace).collect()
 }
 

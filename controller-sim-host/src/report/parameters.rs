@@ -2,7 +2,8 @@
 
 use super::words;
 use crate::output::precision_name;
-use crate::scenario::{Actuator, CompensatorSpec, ControllerSpec, Scenario, Sensor, show, show_short};
+use crate::output::table::rounded_numbers;
+use crate::scenario::{Actuator, CompensatorSpec, ControllerSpec, Scenario, Sensor, show_short};
 use crate::simulate::Precision;
 use controller_core::plant_model::{Factor, PlantModel};
 use controller_core::{
@@ -24,10 +25,10 @@ const UNSET: f64 = 1e6;
 /// The loop that all controllers share: name and value.
 pub(super) fn shared(scenario: &Scenario, precision: Precision) -> Vec<(&'static str, String)> {
     let [y, u] = [&scenario.units.y, &scenario.units.u].map(|unit| words::unit(unit));
-    let with = |x: f64, unit: &str| format!("{} {unit}", show(x)).trim_end().to_owned();
-    let mut list = vec![("Plant", scenario.plant.to_string())];
+    let with = |x: f64, unit: &str| format!("{} {unit}", show_short(x)).trim_end().to_owned();
+    let mut list = vec![("Plant", rounded_numbers(&scenario.plant.to_string()))];
     if let Some(inner) = &scenario.inner_plant {
-        list.push(("Inner part of the plant", inner.to_string()));
+        list.push(("Inner part of the plant", rounded_numbers(&inner.to_string())));
     }
     list.push(("Sampling period", with(scenario.ts, "s")));
     list.push(("Length of the run", with(scenario.duration, "s")));
@@ -56,7 +57,7 @@ pub(super) fn shared(scenario: &Scenario, precision: Precision) -> Vec<(&'static
 fn sensor(sensor: &Sensor, unit: &str) -> String {
     let mut parts = range(sensor.lo, sensor.hi, unit);
     if sensor.resolution > 0.0 {
-        parts.push(format!("resolution {} {unit}", show(sensor.resolution)));
+        parts.push(format!("resolution {} {unit}", show_short(sensor.resolution)));
     }
     joined(&parts)
 }
@@ -66,13 +67,13 @@ fn actuator(actuator: &Actuator, unit: &str) -> String {
     if actuator.rate.is_finite() {
         parts.push(format!(
             "at most {} {} per s",
-            show(actuator.rate),
+            show_short(actuator.rate),
             if unit.is_empty() { "u" } else { unit }
         ));
     }
     for (name, value) in [("resolution", actuator.resolution), ("dead band", actuator.deadband)] {
         if value > 0.0 {
-            parts.push(format!("{name} {} {unit}", show(value)));
+            parts.push(format!("{name} {} {unit}", show_short(value)));
         }
     }
     parts.push(if actuator.read_back { "read back" } else { "not read back" }.to_owned());
@@ -85,9 +86,9 @@ fn joined(parts: &[String]) -> String {
 
 fn range(lo: f64, hi: f64, unit: &str) -> Vec<String> {
     let text = match (lo.is_finite(), hi.is_finite()) {
-        (true, true) => format!("{} to {} {unit}", show(lo), show(hi)),
-        (true, false) => format!("from {} {unit}", show(lo)),
-        (false, true) => format!("up to {} {unit}", show(hi)),
+        (true, true) => format!("{} to {} {unit}", show_short(lo), show_short(hi)),
+        (true, false) => format!("from {} {unit}", show_short(lo)),
+        (false, true) => format!("up to {} {unit}", show_short(hi)),
         (false, false) => return Vec::new(),
     };
     vec![text]
@@ -113,17 +114,18 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
     let pid = |c: &ControllerSpec, value: &dyn Fn(&PidConfig) -> String| {
         c.adrc.is_none().then(|| value(&c.config.pid))
     };
-    add("kp", format!("{u}/{y}"), false, &|c| pid(c, &|p| gain(p.kp)));
-    add("ki", format!("{u}/({y} s)"), false, &|c| pid(c, &|p| gain(p.ki)));
-    add("kd", format!("{u} s/{y}"), false, &|c| pid(c, &|p| gain(p.kd)));
-    add("tf", "s".to_owned(), false, &|c| pid(c, &|p| gain(p.tf)));
-    add("b", none(), false, &|c| pid(c, &|p| show(p.b)));
-    add("c", none(), false, &|c| pid(c, &|p| show(p.c)));
+    add("kp", format!("{u}/{y}"), false, &|c| pid(c, &|p| show_short(p.kp)));
+    add("ki", format!("{u}/({y} s)"), false, &|c| pid(c, &|p| show_short(p.ki)));
+    add("kd", format!("{u} s/{y}"), false, &|c| pid(c, &|p| show_short(p.kd)));
+    add("tf", "s".to_owned(), false, &|c| pid(c, &|p| show_short(p.tf)));
+    add("b", none(), false, &|c| pid(c, &|p| show_short(p.b)));
+    add("c", none(), false, &|c| pid(c, &|p| show_short(p.c)));
     add("action", none(), false, &|c| (c.config.pid.action == Action::Direct).then(|| "direct".to_owned()));
     add("integral rule", none(), false, &|c| {
         (c.config.pid.integral_rule == IntegralRule::Trapezoid).then(|| "trapezoid".to_owned())
     });
-    let adrc = |c: &ControllerSpec, value: fn(&AdrcConfig) -> f64| c.adrc.as_ref().map(|a| gain(value(a)));
+    let adrc =
+        |c: &ControllerSpec, value: fn(&AdrcConfig) -> f64| c.adrc.as_ref().map(|a| show_short(value(a)));
     let per_second = |power: &str| format!("1/s{power}");
     add("ADRC: b0", format!("{y}/({u} s\u{b2})"), false, &|c| adrc(c, |a| a.b0));
     add("ADRC: kp", per_second("\u{b2}"), false, &|c| adrc(c, |a| a.kp));
@@ -131,15 +133,15 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
     add("ADRC: beta1", per_second(""), false, &|c| adrc(c, |a| a.beta1));
     add("ADRC: beta2", per_second("\u{b2}"), false, &|c| adrc(c, |a| a.beta2));
     add("ADRC: beta3", per_second("\u{b3}"), false, &|c| adrc(c, |a| a.beta3));
-    let set = |x: f64, unset: f64| (x != unset).then(|| show(x));
+    let set = |x: f64, unset: f64| (x != unset).then(|| show_short(x));
     add("output from", u.clone(), false, &|c| set(c.config.limits.lo, -UNSET));
     add("output to", u.clone(), false, &|c| set(c.config.limits.hi, UNSET));
-    add("output rises by at most", format!("{u}/s"), false, &|c| c.config.limits.rate_up.map(show));
-    add("output falls by at most", format!("{u}/s"), false, &|c| c.config.limits.rate_down.map(show));
+    add("output rises by at most", format!("{u}/s"), false, &|c| c.config.limits.rate_up.map(show_short));
+    add("output falls by at most", format!("{u}/s"), false, &|c| c.config.limits.rate_down.map(show_short));
     add("anti-windup", none(), false, &|c| c.adrc.is_none().then(|| anti_windup(&c.config).to_owned()));
     add("tt", "s".to_owned(), false, &|c| match c.config.anti_windup {
         _ if c.adrc.is_some() => None,
-        AntiWindupConfig::BackCalculation { tt: Some(tt) } => Some(show(tt)),
+        AntiWindupConfig::BackCalculation { tt: Some(tt) } => Some(show_short(tt)),
         AntiWindupConfig::BackCalculation { tt: None } => {
             Some(show_short(c.config.pid.default_tt(scenario.ts)))
         }
@@ -147,12 +149,16 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
     });
     add("set-point from", y.clone(), false, &|c| set(c.config.setpoint.lo, -UNSET));
     add("set-point to", y.clone(), false, &|c| set(c.config.setpoint.hi, UNSET));
-    add("set-point rises by at most", format!("{y}/s"), false, &|c| c.config.setpoint.rate_up.map(show));
-    add("set-point falls by at most", format!("{y}/s"), false, &|c| c.config.setpoint.rate_down.map(show));
+    add("set-point rises by at most", format!("{y}/s"), false, &|c| {
+        c.config.setpoint.rate_up.map(show_short)
+    });
+    add("set-point falls by at most", format!("{y}/s"), false, &|c| {
+        c.config.setpoint.rate_down.map(show_short)
+    });
     add("set-point follows y", none(), false, &|c| c.config.setpoint.track.then(|| "yes".to_owned()));
     add("error deadband", y.clone(), false, &|c| set(c.config.deadband, 0.0));
     let estimator = |c: &ControllerSpec, value: fn(&EstimatorConfig) -> f64| match &c.compensator {
-        CompensatorSpec::Estimator(e) => Some(gain(value(e))),
+        CompensatorSpec::Estimator(e) => Some(show_short(value(e))),
         _ => None,
     };
     add("estimator: gain", format!("{y}/{u}"), false, &|c| estimator(c, |e| e.gain));
@@ -166,21 +172,21 @@ pub(super) fn lines(specs: &[&ControllerSpec], scenario: &Scenario) -> Vec<Line>
         _ => None,
     };
     add("observer: model", format!("{y}/{u}"), false, &|c| observer(c, |o| Some(model(&o.model))));
-    add("observer: alpha", "s".to_owned(), false, &|c| observer(c, |o| Some(gain(o.alpha))));
+    add("observer: alpha", "s".to_owned(), false, &|c| observer(c, |o| Some(show_short(o.alpha))));
     add("observer: order", none(), false, &|c| observer(c, |o| o.order.map(|order| order.to_string())));
     add("measurement valid", y.clone(), false, &|c| {
         let (lo, hi) = (c.config.measurement_lo, c.config.measurement_hi);
-        ((lo, hi) != (-UNSET, UNSET)).then(|| format!("{} to {}", show(lo), show(hi)))
+        ((lo, hi) != (-UNSET, UNSET)).then(|| format!("{} to {}", show_short(lo), show_short(hi)))
     });
     add("offset", u.clone(), false, &|c| {
         let (lo, hi) = (c.config.offset_lo, c.config.offset_hi);
-        ((lo, hi) != (-UNSET, UNSET)).then(|| format!("{} to {}", show(lo), show(hi)))
+        ((lo, hi) != (-UNSET, UNSET)).then(|| format!("{} to {}", show_short(lo), show_short(hi)))
     });
     add("fallback", u.clone(), false, &|c| {
         (c.config.fallback != ControllerConfig::default().fallback).then(|| fallback(&c.config))
     });
     add("alarms", y, false, &|c| alarms(&c.config.alarms));
-    add("output in mode Off", u, false, &|c| c.config.off_output.map(show));
+    add("output in mode Off", u, false, &|c| c.config.off_output.map(show_short));
     add("mode at the start", none(), false, &|c| {
         (c.mode != Mode::Auto).then(|| words::mode(c.mode).to_owned())
     });
@@ -199,8 +205,10 @@ fn fallback(config: &ControllerConfig) -> String {
     let fallback = &config.fallback;
     let action = match fallback.action {
         FallbackAction::Hold => "hold".to_owned(),
-        FallbackAction::Substitute { output } => format!("go to {}", show(output)),
-        FallbackAction::Ramp { output, rate } => format!("go to {} by {} per s", show(output), show(rate)),
+        FallbackAction::Substitute { output } => format!("go to {}", show_short(output)),
+        FallbackAction::Ramp { output, rate } => {
+            format!("go to {} by {} per s", show_short(output), show_short(rate))
+        }
     };
     let back = match fallback.back {
         FallbackReturn::Automatic => "return by itself",
@@ -219,13 +227,13 @@ fn alarms(alarms: &AlarmConfig) -> Option<String> {
     ];
     let mut parts: Vec<String> = levels
         .iter()
-        .filter_map(|(name, level)| level.map(|level| format!("{name} {}", show(level))))
+        .filter_map(|(name, level)| level.map(|level| format!("{name} {}", show_short(level))))
         .collect();
     if parts.is_empty() {
         return None;
     }
     if alarms.hysteresis > 0.0 {
-        parts.push(format!("hysteresis {}", show(alarms.hysteresis)));
+        parts.push(format!("hysteresis {}", show_short(alarms.hysteresis)));
     }
     Some(parts.join(", "))
 }
@@ -236,14 +244,14 @@ fn model(model: &PlantModel) -> String {
         let terms = [(f.a1, "s"), (f.a2, "s^2")].into_iter().filter(|(a, _)| *a != 0.0);
         terms.fold("1".to_owned(), |text, (a, s)| {
             let sign = if a < 0.0 { '-' } else { '+' };
-            let size = if a.abs() == 1.0 { String::new() } else { format!("{}*", show(a.abs())) };
+            let size = if a.abs() == 1.0 { String::new() } else { format!("{}*", show_short(a.abs())) };
             format!("{text}{sign}{size}{s}")
         })
     };
     let factors = |list: &[Factor]| list.iter().map(|f| format!("({})", factor(f))).collect::<Vec<_>>();
-    let mut top = vec![show(model.gain)];
+    let mut top = vec![show_short(model.gain)];
     if model.dead_time > 0.0 {
-        top.push(format!("exp(-{}*s)", show(model.dead_time)));
+        top.push(format!("exp(-{}*s)", show_short(model.dead_time)));
     }
     top.extend(factors(&model.zeros));
     let mut bottom = vec!["s".to_owned(); model.integrators];
@@ -254,9 +262,4 @@ fn model(model: &PlantModel) -> String {
         [only] => format!("{top}/{only}"),
         several => format!("{top}/({})", several.join("*")),
     }
-}
-
-/// Seven digits: a gain that was converted from another form has more, and nobody reads them.
-fn gain(x: f64) -> String {
-    show(format!("{x:.6e}").parse().unwrap_or(x))
 }

@@ -62,24 +62,20 @@ impl Axis {
     /// As [`of_values`](Self::of_values); numbers above 0 that are far apart stand by their ratios.
     pub(super) fn of_sizes(range: Option<(f64, f64)>, most: usize) -> Self {
         match range {
-            Some((lo, hi)) if lo >= 1e-99 && hi <= 1e99 && hi >= RATIO * lo => Self::by_ratio(lo, hi, most),
+            Some((lo, hi)) if lo >= 1e-99 && hi <= 1e99 && hi >= RATIO * lo => {
+                Self::by_ratio(lo, hi, most, 0.06)
+            }
             _ => Self::of_values(range, most),
         }
     }
 
     /// The axis of frequencies, exactly from the first to the last, by their ratios.
     pub(super) fn of_frequencies((lo, hi): (f64, f64)) -> Self {
-        let mut axis = Self::by_ratio(lo, if hi > lo { hi } else { 10.0 * lo }, FEW);
-        let room = 0.06 / 1.12 * (axis.hi - axis.lo);
-        let (start, end) = (axis.lo + room, axis.hi - room);
-        for tick in &mut axis.ticks {
-            tick.share = (axis.lo + tick.share * (axis.hi - axis.lo) - start) / (end - start);
-        }
-        axis.ticks.retain(|tick| (-1e-9..=1.0 + 1e-9).contains(&tick.share));
+        let mut axis = Self::by_ratio(lo, if hi > lo { hi } else { 10.0 * lo }, FEW, 0.0);
+        let (start, end) = (axis.lo, axis.hi);
         let parts = (start.floor() as i32..=end.ceil() as i32).flat_map(|e| (2..10).map(move |k| (e, k)));
         let parts = parts.map(|(e, k)| (f64::from(e) + libm::log10(f64::from(k)) - start) / (end - start));
         axis.between = parts.filter(|share| (0.0..=1.0).contains(share)).collect();
-        (axis.lo, axis.hi) = (start, end);
         axis
     }
 
@@ -98,19 +94,29 @@ impl Axis {
         Self { lo: start, hi: end, ticks, between: Vec::new(), origin: 0.0, power: 0, ratios: false }
     }
 
-    fn by_ratio(lo: f64, hi: f64, most: usize) -> Self {
+    /// With a share `room` of the range at both ends.
+    fn by_ratio(lo: f64, hi: f64, most: usize, room: f64) -> Self {
         let (start, end) = (libm::log10(lo), libm::log10(hi));
-        let room = 0.06 * (end - start);
+        let room = room * (end - start);
         let (start, end) = (start - room, end + room);
         let decades = (end.ceil() - start.floor()) as i32;
         let every = 1.max(decades / most.max(1) as i32 + i32::from(decades % most.max(1) as i32 > 0));
-        let tick = |e: i32| Tick {
-            share: (f64::from(e) - start) / (end - start),
-            label: if (-3..5).contains(&e) { decimal(1, e) } else { format!("10{}", superscript(e)) },
+        let tick = |(mantissa, e): (i64, i32)| Tick {
+            share: (f64::from(e) + libm::log10(mantissa as f64) - start) / (end - start),
+            label: match e {
+                -3..5 => decimal(mantissa, e),
+                _ if mantissa == 1 => format!("10{}", superscript(e)),
+                _ => format!("{mantissa}\u{b7}10{}", superscript(e)),
+            },
             minor: false,
         };
-        let all = (start.floor() as i32..=end.ceil() as i32).filter(|e| e % every == 0).map(tick);
-        let ticks = all.filter(|tick| (0.0..=1.0).contains(&tick.share)).collect();
+        let inside = |tick: &Tick| (-1e-9..=1.0 + 1e-9).contains(&tick.share);
+        let exponents = || (start.floor() as i32..=end.ceil() as i32).filter(|e| e % every == 0);
+        let mut ticks: Vec<Tick> = exponents().map(|e| tick((1, e))).filter(inside).collect();
+        if ticks.len() < 2 {
+            // One number alone does not tell the scale.
+            ticks = exponents().flat_map(|e| [1, 2, 5].map(|m| tick((m, e)))).filter(inside).collect();
+        }
         Self { lo: start, hi: end, ticks, between: Vec::new(), origin: 0.0, power: 0, ratios: true }
     }
 
@@ -118,11 +124,18 @@ impl Axis {
         let (size, span) = (lo.abs().max(hi.abs()), hi - lo);
         let origin = if span < CLOSE * size { rounded(lo + span / 2.0, exponent(span) + 1) } else { 0.0 };
         let (start, end) = (lo - origin, hi - origin);
-        let (mantissa, e) = step(end - start, most);
-        let step = mantissa as f64 * power_of_ten(e);
         // Rounding of the ends must not lose a tick that stands at one.
-        let first = ((start / step) - 1e-9).ceil() as i64;
-        let last = ((end / step) + 1e-9).floor() as i64;
+        let ends = |step: f64| (((start / step) - 1e-9).ceil() as i64, ((end / step) + 1e-9).floor() as i64);
+        let sized = |(mantissa, e): (i64, i32)| mantissa as f64 * power_of_ten(e);
+        // One number alone does not tell the scale.
+        let tells = |most: &usize| {
+            let (first, last) = ends(sized(step(end - start, *most)));
+            last > first
+        };
+        let most = (most..most + 4).find(tells).unwrap_or(most + 4);
+        let (mantissa, e) = step(end - start, most);
+        let step = sized((mantissa, e));
+        let (first, last) = ends(step);
         let power = shared_power(start.abs().max(end.abs()));
         let tick = |i: i64| Tick {
             share: ((i as f64 * step - start) / (end - start)).clamp(0.0, 1.0),
@@ -262,12 +275,27 @@ mod tests {
     }
 
     #[test]
+    fn no_axis_has_a_single_number() {
+        for most in 2..9 {
+            for k in 1..400 {
+                let (lo, hi) = (-0.013 * f64::from(k % 7), 0.37 * f64::from(k));
+                let axis = Axis::of_values(Some((lo, hi)), most);
+                assert!((2..=most + 5).contains(&axis.ticks.len()), "{lo} {hi} {axis:?}");
+                let sizes = Axis::of_sizes(Some((0.03 * f64::from(k), 0.03 * f64::from(k) * 31.0)), most);
+                assert!(sizes.ticks.len() >= 2, "{k} {sizes:?}");
+                let omega = Axis::of_frequencies((0.02 * f64::from(k), 0.2 * f64::from(k)));
+                assert!(omega.ticks.len() >= 2, "{k} {omega:?}");
+            }
+        }
+    }
+
+    #[test]
     fn any_range_has_an_axis() {
         let values = [0.0, 1.0, -1.0, 1e-320, 5e-310, 1e300, f64::MAX, f64::MIN, 1e12, -1e-12, 123_456.789];
         for lo in values {
             for hi in values.into_iter().filter(|hi| *hi >= lo) {
                 let axis = Axis::of_values(Some((lo, hi)), 5);
-                assert!((1..=7).contains(&axis.ticks.len()), "{lo} {hi} {axis:?}");
+                assert!((2..=7).contains(&axis.ticks.len()), "{lo} {hi} {axis:?}");
                 assert!(axis.ticks.iter().all(|t| (0.0..=1.0).contains(&t.share)), "{axis:?}");
                 assert!(axis.ticks.iter().all(|t| t.label.chars().count() <= 8), "{axis:?}");
                 assert!((0.0..=1.0).contains(&axis.share(lo)) && (0.0..=1.0).contains(&axis.share(hi)));

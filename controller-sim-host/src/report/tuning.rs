@@ -1,6 +1,7 @@
 //! The page of a tuned loop: from the record to the loop that is put into service.
 
-use super::page::document;
+use super::commissioning::card;
+use super::page::{self, document, scroll};
 use super::{Chapter, analysis, chapter, identification};
 use crate::output::table::rounded_numbers;
 use crate::output::{Analysed, Tuning};
@@ -13,10 +14,10 @@ pub(super) fn page(
     analysed: &Analysed<'_>,
     command: &str,
 ) -> String {
-    let heading = format!("{} for the process of {}", tuning.made.method.title(), tuning.finding.source.name);
+    let heading = chapter.scenario.title.clone();
     let content = html! {
         main {
-            (summary(tuning))
+            (summary(tuning, chapter, analysed))
             section {
                 h2 id="process" { "The process" }
                 (identification::sections(&tuning.finding))
@@ -31,7 +32,7 @@ pub(super) fn page(
             }
             section {
                 h2 id="margins" { "Robustness and noise" }
-                (analysis::chapter(0, analysed, false))
+                (analysis::chapter(0, analysed, false, false))
             }
         }
     };
@@ -39,32 +40,39 @@ pub(super) fn page(
 }
 
 /// What was chosen, what it promises, and what to know.
-fn summary(tuning: &Tuning<'_>) -> Markup {
-    let groups = tuning.groups();
-    let notes = tuning.notes();
+fn summary(tuning: &Tuning<'_>, chapter: &Chapter<'_>, analysed: &Analysed<'_>) -> Markup {
+    let notes: Vec<String> = tuning.notes().iter().map(|note| rounded_numbers(note)).collect();
     let made = tuning.made;
-    html! {
-        @if !notes.is_empty() {
-            div class="notes" role="note" { ul { @for note in &notes { li { (note) } } } }
+    let scenario = chapter.scenario;
+    let simulated = html! {
+        table class="areas" {
+            thead { tr {
+                th scope="col" class="text" id="simulated" { "Simulated" }
+                th scope="col" { "value" }
+                th scope="col" class="text" { "unit" }
+            } }
+            tbody {
+                @for (name, value, unit) in tuning.simulated(&scenario.units.y) {
+                    tr { th scope="row" { (name) } td { (value) } td class="text unit" { (unit) } }
+                }
+            }
         }
+    };
+    html! {
+        (page::notes(&notes))
         section {
             h2 id="summary" { "For the commissioning file" }
             p { (made.method.title()) " (" (made.method.source()) "), for this model of the process, in which the loop is simulated, too:" }
             div class="scroll" role="region" tabindex="0" aria-label="Model of the process" {
                 pre { code { (rounded_numbers(&made.plant.to_string())) } }
             }
-            @for (title, rows) in &groups {
-                div class="scroll" role="region" tabindex="0" aria-label=(title) {
-                    table class="areas" {
-                        thead { tr { th scope="col" class="text" { (title) } th scope="col" { "value" } } }
-                        tbody {
-                            @for (name, value) in rows {
-                                tr { th scope="row" class="text" { (name) } td { (value) } }
-                            }
-                        }
-                    }
+            @for (result, spec) in analysed.controllers.iter().zip(&scenario.controllers) {
+                @match result {
+                    Ok(analysis) => (card("summary-numbers", scenario, Some(spec), analysis, &analysis.name)),
+                    Err((name, why)) => (page::notes(&[format!("{name}: {why}")])),
                 }
             }
+            (scroll("simulated", &simulated))
         }
     }
 }

@@ -1,14 +1,14 @@
 //! What is said of a scenario in words: events, numbers, modes.
 
-use crate::scenario::{Change, Event, Scenario, Signal, show};
+use crate::scenario::{Change, Event, Scenario, Signal, show_short};
 use controller_core::Mode;
 
 /// Longest unit that is written out.
 const LONGEST_UNIT: usize = 20;
 
-/// A number of a scenario, as short as it was written, with true minus signs.
+/// A number of a scenario, with at most six digits and true minus signs.
 pub(super) fn number(x: f64) -> String {
-    show(x).replace('-', "\u{2212}")
+    show_short(x).replace('-', "\u{2212}")
 }
 
 /// `text` with at most `most` characters.

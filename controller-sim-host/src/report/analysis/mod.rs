@@ -4,12 +4,12 @@ mod curves;
 mod nyquist;
 mod picture;
 
-use super::page::{document, notes, scroll};
+use super::commissioning::card;
+use super::page::{document, notes};
 use super::words;
 use crate::analysis::Analysis;
 use crate::output::Analysed;
-use crate::output::analysis::rows;
-use crate::output::table::format_number;
+use crate::output::table::{format_number, rounded_numbers};
 use curves::{Curves, curves, lowest};
 use maud::{Markup, html};
 use picture::{complementary, figure, magnitude, noise, phase, sensitivity};
@@ -22,7 +22,7 @@ pub(super) fn page(list: &[Analysed<'_>], command: &str) -> String {
     };
     let several = list.len() > 1;
     let content = html! {
-        main { @for (index, one) in list.iter().enumerate() { (chapter(index, one, several)) } }
+        main { @for (index, one) in list.iter().enumerate() { (chapter(index, one, several, true)) } }
     };
     document("Analysis of control loops", &heading, &content, command)
 }
@@ -30,15 +30,19 @@ pub(super) fn page(list: &[Analysed<'_>], command: &str) -> String {
 fn title(one: &Analysed<'_>) -> String {
     let title = match one.scenario.title.trim() {
         // Typed, or from the standard input.
-        "" if one.name.starts_with('<') => format!("Loop of the plant {}", one.scenario.plant),
+        "" if one.name.starts_with('<') => {
+            format!("Loop of the plant {}", rounded_numbers(&one.scenario.plant.to_string()))
+        }
         "" => one.name.to_owned(),
         title => title.to_owned(),
     };
     one.case.map_or_else(|| title.clone(), |case| format!("{title}: {case}"))
 }
 
-pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup {
+/// The analysis of one case. The numbers are left out where they stand elsewhere.
+pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool, with_numbers: bool) -> Markup {
     let id = format!("loop-{}", index + 1);
+    let numbers = with_numbers.then(|| format!("{id}-table"));
     let good: Vec<(usize, &Analysis)> = one
         .controllers
         .iter()
@@ -61,7 +65,7 @@ pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup
         section class="run" {
             @if several { h2 { (title(one)) } }
             dl class="loop" {
-                div { dt { "plant" } dd { (one.scenario.plant) } }
+                div { dt { "plant" } dd { (rounded_numbers(&one.scenario.plant.to_string())) } }
                 div { dt { "ts" } dd { (words::number(one.scenario.ts)) " s" } }
                 div { dt { "latency" } dd { (words::number(one.scenario.latency)) " s" } }
                 div { dt { "Nyquist frequency" } dd { (format_number(core::f64::consts::PI / one.scenario.ts)) " rad/s" } }
@@ -71,7 +75,9 @@ pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup
                     Ok(a) => {
                         (heading(&a.name))
                         (notes(&a.warnings))
-                        (numbers(&format!("{id}-table-{}", at + 1), a, &of(&a.name)))
+                        @if let Some(numbers) = &numbers {
+                            (card(&format!("{numbers}-{}", at + 1), one.scenario, one.scenario.controllers.get(at), a, &of(&a.name)))
+                        }
                     }
                     Err((name, why)) => (notes(&[format!("{name}: {why}")])),
                 }
@@ -88,29 +94,4 @@ pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool) -> Markup
             }
         }
     }
-}
-
-fn numbers(id: &str, a: &Analysis, of: &str) -> Markup {
-    let table = html! {
-        table {
-            thead { tr {
-                th scope="col" class="text" id=(id) { "Margins and noise" span class="spoken" { " of " (of) } }
-                th scope="col" { "continuous" }
-                th scope="col" { "sampled" }
-            } }
-            tbody {
-                @for (what, unit, c, d) in rows(a) {
-                    tr {
-                        th scope="row" {
-                            (if what.is_empty() { "delay margin" } else { what })
-                            @if !unit.is_empty() { " " span class="unit" { "[" (unit) "]" } }
-                        }
-                        td { (c) }
-                        td { (d) }
-                    }
-                }
-            }
-        }
-    };
-    scroll(id, &table)
 }

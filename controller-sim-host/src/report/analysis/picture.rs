@@ -2,7 +2,7 @@
 
 use super::curves::{At, Crossing, Curves, Kind};
 use crate::output::table::format_number;
-use crate::report::drawing::{COLUMNS, below, colour, controller, grid, percent, pixel};
+use crate::report::drawing::{BELOW, COLUMNS, below, colour, controller, grid, percent, pixel};
 use crate::report::legend;
 use crate::report::scale::Axis;
 use controller_design::margins::Margins;
@@ -10,8 +10,8 @@ use maud::{Markup, html};
 
 /// Height of a panel and the space above and below it \[px\].
 const HEIGHT: f64 = 210.0;
-const TOP: f64 = 27.0;
-const BOTTOM: f64 = 34.0;
+const TOP: f64 = 30.0;
+const BOTTOM: f64 = BELOW;
 /// Smallest and largest phase that is drawn \[deg\]: a dead time turns for ever.
 const PHASES: (f64, f64) = (-540.0, 180.0);
 /// Smallest part of the largest value that is drawn.
