@@ -394,3 +394,85 @@ fn a_run_that_was_not_recorded_still_has_its_numbers() {
     assert!(text.contains("there is no picture") && text.contains("0.1807"));
     Document::parse(&figure(&run.chapter())).expect("well formed");
 }
+
+/// The estimate begins at 0 at an operating point, and so does the disturbance beside it.
+#[test]
+fn a_disturbance_is_drawn_from_where_its_estimate_begins() {
+    let run = ran("offset.toml", DEMO, |s| {
+        s.initial.disturbance = 1000.0;
+        s.events.truncate(1);
+        s.events[0] = Event {
+            at: 5.0,
+            label: String::new(),
+            changes: vec![Change::Disturbance(Signal::Step(1000.5))],
+            controller: None,
+        };
+    });
+    let text = figure(&run.chapter());
+    let texts = texts(&Document::parse(&text).expect("well formed"));
+    let title = "Disturbance d \u{2212} d(0), estimate d_hat";
+    let at = texts.iter().position(|text| text == title).unwrap_or_else(|| panic!("{texts:?}"));
+    let next = texts[at + 1..].iter().position(|text| text.starts_with("Output of")).expect("the next panel");
+    let numbers: Vec<f64> = texts[at + 1..at + 1 + next]
+        .iter()
+        .map(|n| n.replace('\u{2212}', "-").parse().expect("a number"))
+        .collect();
+    assert!(numbers.len() >= 2 && numbers.iter().all(|n| n.abs() <= 1.0), "{numbers:?}");
+    assert!(only(&run).contains("d(0) = 1000: the estimate"));
+}
+
+/// The record of a load-response experiment on `exp(-s)/(1+s)` with a gain of 1 or -1.
+fn experiment_page(gain: f64, noise: f64) -> String {
+    use controller_design::assessment::{AssessOptions, Experiment, assess};
+    let (kp, ti, ts) = (1.0194, 1.451, 0.02);
+    let (mut y, mut i, mut u) = (0.0, 0.0, vec![0.0; 50]);
+    let (mut t, mut pv, mut co) = (vec![], vec![], vec![]);
+    for k in 0..2000_u32 {
+        if (250..260).contains(&k) {
+            i = 1.0 + kp * y
+        } else {
+            i -= kp * ts / ti * y
+        }
+        (t.push(ts * f64::from(k)), pv.push(gain * y), co.push(i - kp * y));
+        u.push(i - kp * y);
+        y += (u[k as usize] - y) * ts;
+    }
+    let setpoint = [0.0; 2000];
+    let options = AssessOptions::default();
+    let mut found = assess(&Experiment::new(&t, &setpoint, &pv, &co), &options).expect("a record");
+    if let Some(features) = &mut found.features {
+        features.sigma = noise;
+    }
+    let signals = controller_sim_host::report::Signals {
+        t: &t,
+        setpoint: &setpoint,
+        output: &pv,
+        input: &co,
+        names: ("y", "u"),
+    };
+    let experiment = controller_sim_host::report::Experiment {
+        name: "loop.csv",
+        signals,
+        assessment: &found,
+        acceptance: options.acceptance,
+    };
+    controller_sim_host::report::assessment_page(&experiment, "controller-sim assess loop.csv")
+}
+
+#[test]
+fn what_noise_could_have_drawn_is_not_marked_as_a_dip() {
+    let (clear, noisy) = (experiment_page(1.0, 0.0), experiment_page(1.0, 0.2));
+    assert!(clear.contains(">dip</text>") && clear.contains("t_dip = ") && !clear.contains("is not marked"));
+    assert!(!noisy.contains(">dip</text>") && !noisy.contains("t_dip = ") && noisy.contains(">P1</text>"));
+    assert!(noisy.contains("less than two standard deviations of the noise is not marked"));
+}
+
+#[test]
+fn a_response_that_points_down_is_told_so() {
+    let (up, down) = (experiment_page(1.0, 0.0), experiment_page(-1.0, 0.0));
+    let said = "The first peak points down here, and so the dip points up.";
+    assert!(!up.contains(said) && down.contains(said));
+    for page in [up, down] {
+        assert!(!page.contains("lowest") && !page.contains("highest"), "words of one direction");
+    }
+}

@@ -36,15 +36,11 @@ impl Identification<'_> {
         let found = self.found;
         match found.chosen.name() {
             "fit" => format!(
-                "areas of the fitted model, with a standard deviation of K_P of {} ({} with the raw areas, the integrals of \
-                 the record itself)",
+                "fitted model: K_P has a standard deviation of {} (raw areas: {})",
                 per_cent(found.kp_spread),
                 per_cent(found.raw_kp_spread)
             ),
-            _ => format!(
-                "raw areas, the integrals of the record itself, with a standard deviation of K_P of {}",
-                per_cent(found.kp_spread)
-            ),
+            _ => format!("raw areas: K_P has a standard deviation of {}", per_cent(found.kp_spread)),
         }
     }
 

@@ -62,7 +62,7 @@ pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
     vec![
         line(
             "dip",
-            "farthest return after the first peak, in first peaks; negative: beyond the mean before the step",
+            "farthest return after the first peak, in first peaks",
             features.dip,
             format!("{:.2} to {:.2}", dip.0, dip.1),
             within(features.dip, dip),
@@ -172,7 +172,7 @@ fn picture(picture: &Picture, experiment: &Experiment<'_>) -> Markup {
                 }
                 @if picture.target {
                     " Of a near-optimal loop the dip lies in the box, and the third peak P3 is at most "
-                    (format!("{:.2}", experiment.acceptance.r3)) " first peaks high."
+                    (format!("{:.2}", experiment.acceptance.r3)) " first peaks large."
                 }
             }
         }

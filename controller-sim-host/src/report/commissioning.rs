@@ -86,11 +86,12 @@ fn groups(scenario: &Scenario, spec: &ControllerSpec) -> Vec<(&'static str, Vec<
         ],
         _ => Vec::new(),
     };
+    let is_pid = !parallel.is_empty();
     vec![
         ("Sampling", sampling),
         ("Parallel form, kp + ki/s + kd s", parallel),
         ("Standard form, KP (1 + 1/(TN s) + TV s)", standard),
-        ("Whatever the form", rest),
+        (if is_pid { "Both forms" } else { "Controller" }, rest),
     ]
 }
 

@@ -35,7 +35,10 @@ pub(super) fn sections(finding: &Identification<'_>) -> Markup {
         h2 id="record" { "Record and model" }
         (picture(finding, simulated.as_deref()))
         h2 id="areas" { "Areas" }
-        p { "Used: " (finding.choice()) "." }
+        p {
+            "Used: " (finding.choice()) ". Raw areas are integrals of the record itself; where they do not tell K_P well "
+            "enough, those of a fitted model take their place."
+        }
         (areas(finding))
         h2 id="model" { "Model" }
         (model(finding))

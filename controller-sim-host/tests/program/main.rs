@@ -11,6 +11,7 @@ mod gallery;
 mod identify;
 #[cfg(unix)]
 mod interrupt;
+mod page_words;
 mod pages;
 mod parquet;
 mod reproduced;

@@ -79,7 +79,20 @@ fn a_noisy_log_of_a_cooling_valve_gives_a_robust_loop() {
     );
     assert!(design["estimator"].is_object());
     let page = folder.read("loop.html");
-    for part in ["For the commissioning file", "Temperatur", "Nyquist", "degC"] {
+    for part in [
+        "For the commissioning file",
+        "Temperatur",
+        "Nyquist",
+        "degC",
+        "sampling period ts",
+        "KP, gain",
+        "TN, reset time",
+        "TV, derivative time",
+        ">output from<",
+        ">output to<",
+        "good <span class=\"unit\">(at most 2)",
+        "white noise, std(u)/std(n)",
+    ] {
         assert!(page.contains(part), "`{part}` is not on the page");
     }
     let run = json(&folder.run(&["run", "loop.toml", "--json", "--precision", "f32"]));
