@@ -399,12 +399,12 @@ fn a_run_that_was_not_recorded_still_has_its_numbers() {
 #[test]
 fn a_disturbance_is_drawn_from_where_its_estimate_begins() {
     let run = ran("offset.toml", DEMO, |s| {
-        s.initial.disturbance = 1000.0;
+        s.initial.disturbance = 50.0;
         s.events.truncate(1);
         s.events[0] = Event {
             at: 5.0,
             label: String::new(),
-            changes: vec![Change::Disturbance(Signal::Step(1000.5))],
+            changes: vec![Change::Disturbance(Signal::Step(50.5))],
             controller: None,
         };
     });
@@ -418,7 +418,7 @@ fn a_disturbance_is_drawn_from_where_its_estimate_begins() {
         .map(|n| n.replace('\u{2212}', "-").parse().expect("a number"))
         .collect();
     assert!(numbers.len() >= 2 && numbers.iter().all(|n| n.abs() <= 1.0), "{numbers:?}");
-    assert!(only(&run).contains("d(0) = 1000: the estimate"));
+    assert!(only(&run).contains("d(0) = 50: the estimate"));
 }
 
 /// The record of a load-response experiment on `exp(-s)/(1+s)` with a gain of 1 or -1.

@@ -18,7 +18,7 @@ const fn named(found: &'static str, name: &'static str, means: &'static str) -> 
     Word { found, name, means }
 }
 
-const WORDS: [Word; 58] = [
+const WORDS: [Word; 60] = [
     word("PI", "controller with a proportional and an integral part"),
     word("PID", "controller with a proportional, an integral and a derivative part"),
     word("MOMI", "magnitude optimum by multiple integration: tuned by the areas of a response"),
@@ -68,6 +68,8 @@ const WORDS: [Word; 58] = [
     word("A_n", "gain from measurement noise to the output at high frequency"),
     word("std", "standard deviation"),
     word("rms", "root mean square"),
+    word("fit_rms", "root mean square of the residuals of the fitted model"),
+    word("kp_spread", "standard deviation of K_P over its value"),
     word("K_P", "proportional gain by the magnitude optimum"),
     named(
         "A0",

@@ -92,7 +92,9 @@ impl Panel<'_> {
         };
         let signals = self.traces.iter().filter_map(Trace::range).fold(None, join);
         let (lo, hi) = self.levels.iter().map(|level| (level.value, level.value)).fold(signals, join)?;
-        let missing = (self.least - (hi - lo)).max(0.0);
+        // What stands still far from 0 has an axis of its own size.
+        let is_near = lo.abs().max(hi.abs()) <= 1e3 * self.least;
+        let missing = if is_near { (self.least - (hi - lo)).max(0.0) } else { 0.0 };
         Some((lo - missing / 2.0, hi + missing / 2.0))
     }
 }
