@@ -95,7 +95,7 @@ fn groups(scenario: &Scenario, spec: &ControllerSpec) -> Vec<(&'static str, Vec<
     ]
 }
 
-/// The margins of the design and of the law that runs, with a word on the latter.
+/// The margins of the design and of the law that runs, with a verdict on the latter.
 fn margins(id: &str, analysis: &Analysis, of: &str) -> Markup {
     let table = html! {
         table {
@@ -103,7 +103,7 @@ fn margins(id: &str, analysis: &Analysis, of: &str) -> Markup {
                 th scope="col" class="text" id=(id) { "Margins and noise" span class="spoken" { " of " (of) } }
                 th scope="col" { "continuous" }
                 th scope="col" { "sampled" }
-                th scope="col" class="text" { "sampled is" }
+                th scope="col" class="text" { "verdict" }
             } }
             tbody {
                 @for row in rows(analysis) {
