@@ -433,7 +433,9 @@ fn experiment_page(gain: f64, noise: f64) -> String {
         } else {
             i -= kp * ts / ti * y
         }
-        (t.push(ts * f64::from(k)), pv.push(gain * y), co.push(i - kp * y));
+        t.push(ts * f64::from(k));
+        pv.push(gain * y);
+        co.push(i - kp * y);
         u.push(i - kp * y);
         y += (u[k as usize] - y) * ts;
     }
