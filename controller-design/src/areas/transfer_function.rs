@@ -44,10 +44,16 @@ impl TransferFunction {
     }
 
     fn series(&self, out: &mut [Double]) -> Result<(), Refusal> {
+        if self.integrators() > 1 {
+            return Err(Refusal::Plant {
+                must: "have no pole at s = 0: the areas of an integrating plant are infinite",
+                help: "close an inner loop around one of the integrators and design for that loop",
+            });
+        }
         if self.integrators() > 0 {
             return Err(Refusal::Plant {
                 must: "have no pole at s = 0: the areas of an integrating plant are infinite",
-                help: "use a rule for integrating plants, such as simc, amigo or pi-ms",
+                help: "use a rule for integrating plants",
             });
         }
         if self.differentiators() > 0 {

@@ -1,5 +1,6 @@
 //! From a request to a design, rule by rule.
 
+use super::calmer::calmer;
 use super::finish::finish;
 use super::robust::within;
 use super::{Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Request, RuleModel};
@@ -53,6 +54,13 @@ pub fn design_with_areas(
 ) -> Result<Design, Refusal> {
     check("ts", request.ts, f64::MIN_POSITIVE, 1e9)?;
     check("latency", request.latency, 0.0, 1e12)?;
+    let usual = DEFAULT_NOISE_GAIN / measured.map_or(plant.gain(), |areas| areas.of(0)).abs();
+    let once = |request: &Request| once(plant, measured, request);
+    once(request).or_else(|refusal| calmer(request, usual, &refusal, once).ok_or(refusal))
+}
+
+/// By the request as it is.
+fn once(plant: &TransferFunction, measured: Option<&Areas>, request: &Request) -> Result<Design, Refusal> {
     let delayed = late(plant, request.latency)?;
     let mut job = Job { plant, delayed, measured, request, made: Made::default() };
     let law = job.law()?;

@@ -10,7 +10,7 @@ use crate::{Refusal, Warning};
 use controller_core::{Adrc, AdrcCoefficients, AdrcConfig};
 
 /// Largest maximum sensitivity of a robust loop.
-const ROBUST: f64 = 2.0;
+pub(super) const ROBUST: f64 = 2.0;
 /// Delay margin in samples below which the sampling period is too long.
 const FEW_SAMPLES: f64 = 10.0;
 

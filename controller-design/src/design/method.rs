@@ -95,11 +95,23 @@ impl Method {
             Self::PiMs => &["ms"],
             Self::Dob => &["ms", "ms_max", "alpha", "noise_ratio", "want"],
             Self::PiIae => &[],
-            Self::Ah => &["tf", "ms"],
-            Self::Adrc => &["ms"],
-            Self::Amigo => &["tf"],
-            Self::Simc => &["tf", "tau_c"],
+            Self::Ah => &["tf", "kpidn", "ms"],
+            Self::Adrc => &["ms", "b0"],
+            Self::Amigo => &["tf", "kpidn"],
+            Self::Simc => &["tf", "kpidn", "tau_c"],
         }
+    }
+
+    /// The methods that look at an option, by its name in files, separated by commas.
+    ///
+    /// ```
+    /// use controller_design::design::Method;
+    /// assert_eq!(Method::that_look_at("ms_max"), "de-momi, dob");
+    /// ```
+    #[must_use]
+    pub fn that_look_at(option: &str) -> String {
+        let of = Self::ALL.into_iter().filter(|method| method.options().contains(&option));
+        of.map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
     /// Whether it puts a disturbance estimator or observer beside the PID.

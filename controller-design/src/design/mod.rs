@@ -11,16 +11,20 @@
 //! # Ok::<(), controller_design::Refusal>(())
 //! ```
 
+mod adrc;
 mod build;
+mod calmer;
 mod finish;
 mod method;
 mod models;
+mod remedy;
 mod request;
 mod robust;
 
 pub use build::{design, design_with_areas};
 pub use method::Method;
-pub use request::{EstimatorFilter, Filter, ObserverFilter, Request};
+pub use remedy::{Remedy, remedies};
+pub use request::{AdrcGain, EstimatorFilter, Filter, ObserverFilter, Request};
 
 use crate::Warnings;
 use crate::areas::Areas;

@@ -25,8 +25,10 @@ pub struct Request {
     /// Filter of the disturbance observer.
     pub observer_filter: ObserverFilter,
     /// Maximum sensitivity the rule designs for, where it takes one (`pi-ms`, `dob`: default 1.4; `ah`: 1.4 or 2,
-    /// default 1.4).
+    /// default 1.4; `adrc`: default 1.6).
     pub ms: Option<f64>,
+    /// Gain at high frequencies that an `adrc` is given.
+    pub b0: AdrcGain,
     /// Time constant of the closed loop for `simc` \[s\]; `None`: the dead time of its model.
     pub tau_c: Option<f64>,
     /// Largest maximum sensitivity that is accepted of a compensated loop: a `de-momi` first raises `tfd`, then cuts `kfd`; a
@@ -34,10 +36,26 @@ pub struct Request {
     pub ms_max: Option<f64>,
 }
 
+/// The gain `b0` of an ADRC, `y'' = b0*u + ...` [y/u/s^2].
+///
+/// The chapter chooses it by hand, as the gain of a second-order model at high frequencies; larger for plants with dead time,
+/// which that makes slower.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AdrcGain {
+    /// `gain/a2` of the reduced model; with a first-order model `gain/(a1*dead_time)`.
+    Model,
+    /// The one, around that of the model, whose fastest loop within `ms` has the largest integral gain, as `pi-ms` does for a
+    /// PI: for `omega_o = 4*omega_c` that is `64/73*omega_c^3/b0`. Cost: some ten times that of the others.
+    Search,
+    /// This one, of the sign of the plant's gain.
+    Value(f64),
+}
+
 /// Filter of a PID.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Filter {
-    /// Noise gain `4/|K|`, or 1.05 times the least attainable one if that is larger.
+    /// Noise gain `4/|K|`, or 1.05 times the least attainable one if that is larger; less where a loop with that much would not
+    /// be stable. For `ah`, `amigo` and `simc` a tenth of the derivative time, at least `ts`.
     Default,
     /// This time constant `tf` \[s\].
     Time(f64),
@@ -81,6 +99,7 @@ impl Request {
             estimator_filter: EstimatorFilter::Default,
             observer_filter: ObserverFilter::Default,
             ms: None,
+            b0: AdrcGain::Model,
             tau_c: None,
             ms_max: None,
         }

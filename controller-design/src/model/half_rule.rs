@@ -100,10 +100,19 @@ pub fn half_rule(plant: &TransferFunction, keep: Keep, ts: f64) -> Result<HalfRu
 }
 
 fn lags(plant: &TransferFunction, ts: f64) -> Result<Lags, Refusal> {
-    const HELP: &str = "use a rule that takes the plant as it is: momi, de-momi, pi-ms";
+    const HELP: &str = "use a rule that takes the plant as it is";
     let refuse = |must| Err(Refusal::Plant { must, help: HELP });
-    if plant.integrators() > 1 || plant.differentiators() > 0 {
-        return refuse("have at most one integrator and no zero at 0");
+    if plant.integrators() > 1 {
+        return Err(Refusal::Plant {
+            must: "have at most one integrator",
+            help: "close an inner loop around one of them and design for that loop",
+        });
+    }
+    if plant.differentiators() > 0 {
+        return Err(Refusal::Plant {
+            must: "have no zero at s = 0: no integral action can hold its output",
+            help: "control another output",
+        });
     }
     // A root p is a time constant -1/p.
     let times = |roots: Vec<Complex>| -> Option<Vec<f64>> {
@@ -117,7 +126,10 @@ fn lags(plant: &TransferFunction, ts: f64) -> Result<Lags, Refusal> {
         return refuse("have real poles");
     };
     if taus.iter().any(|tau| *tau < 0.0) {
-        return refuse("be stable");
+        return Err(Refusal::Plant {
+            must: "be stable or integrating",
+            help: "stabilise it by an inner loop and design for that loop",
+        });
     }
     let Some(zeros) = times(plant.zeros()) else { return refuse("have real zeros") };
     taus.sort_by(|a, b| b.total_cmp(a));
@@ -188,7 +200,7 @@ fn cancel(lags: &mut Lags, lead: f64) -> Result<(), Refusal> {
         }
         _ => Err(Refusal::Plant {
             must: "have a lag for every zero in the left half plane",
-            help: "use a rule that takes the plant as it is: momi, de-momi, pi-ms",
+            help: "use a rule that takes the plant as it is",
         }),
     }
 }

@@ -63,7 +63,7 @@ impl Fopdt {
     /// # Ok::<(), controller_design::Refusal>(())
     /// ```
     pub fn from_areas(plant: &TransferFunction) -> Result<Self, Refusal> {
-        const HELP: &str = "use a rule that takes the plant as it is: momi, de-momi, pi-ms";
+        const HELP: &str = "use a rule that takes the plant as it is";
         let [a0, a1, a2, ..] = plant.areas6()?.values();
         let mean = a1 / a0;
         let kappa = 2.0 * (a2 / a0) / (mean * mean) - 1.0;

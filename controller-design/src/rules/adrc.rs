@@ -112,7 +112,7 @@ impl AdrcDesign {
         if model.a2 == 0.0 {
             return Err(Refusal::Plant {
                 must: "be of second order at least",
-                help: "give b0 yourself, or use a rule for first-order plants, such as simc",
+                help: "give b0 yourself, or use a PI",
             });
         }
         Self::for_settling_time(model.gain / model.a2, settling_time)

@@ -21,6 +21,12 @@ pub enum AhMs {
 /// With `a = gain*L/T` and `x = L/(L + T)`, `L` the dead time and `T` the time constant, `kp*a`, `ti/L`, `td/L` and
 /// `b` are each `c0*exp(c1*x + c2*x^2)`. `c = 0`. The rule says nothing about the filter: `tf = td/10` here.
 ///
+/// The curves were fitted to plants of several lags, some with dead time or a zero in the right half-plane. They do not
+/// hold for what is truly of first order with a short dead time: there the loop gain stays at `s = kd*gain/T` beyond the
+/// dead time, so that `Ms` is at least `1/(1 - s)`; for `Ms = 1.4` that is more than wished for below `x = 0.32`, for
+/// `Ms = 2` below 0.31; below 0.15 and 0.21 `s` is above 1 and the loop unstable. [`new`](Self::new) cannot see the
+/// plant and warns; the method `ah` of a design refuses a plant whose loop has more than 1.5 times the wanted `Ms`.
+///
 /// `L` is where the steepest tangent of the step response leaves the initial value; for a plant in writing
 /// `of_plant` finds it (with the feature `std`). The paper takes `T = A_1/A_0 - L`.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +74,8 @@ const FILTER: f64 = 0.1;
 /// With a plant of first order the loop gain does not fall below `kd*gain/tau` at high frequencies: from 1 on the loop
 /// is unstable, at a half `Ms` is 2 by this alone.
 const LARGEST_DERIVATIVE: f64 = 0.5;
+/// What that loop gain is called.
+pub(crate) const LOOP_GAIN: &str = "kd*gain/tau";
 /// `L/(L + T)` below which the gain grows beyond what any actuator follows.
 const LEAST_SHARE: f64 = 0.05;
 
@@ -109,9 +117,8 @@ impl AhPid {
         }
         let share = pid.kd * gain / tau;
         if share > LARGEST_DERIVATIVE {
-            let (about, text) =
-                ("kd*gain/tau", "unstable on a plant that is truly of first order: look at the margins");
-            let max = LARGEST_DERIVATIVE;
+            let text = "unstable on a plant that is truly of first order: look at the margins";
+            let (about, max) = (LOOP_GAIN, LARGEST_DERIVATIVE);
             warn(&mut warnings, Warning::OutsideValidity { about, value: share, min: 0.0, max, text });
         }
         Ok(Self { pid: checks::in_range(pid)?, warnings })
@@ -135,6 +142,13 @@ impl AhPid {
     pub fn of_plant(plant: &crate::model::TransferFunction, ms: AhMs) -> Result<Self, Refusal> {
         let dead_time = super::inflexion::Inflexion::of(plant)?.dead_time();
         let areas = plant.areas6()?;
-        Self::new(plant.gain(), areas.of(1) / areas.of(0) - dead_time, dead_time, ms)
+        let tau = areas.of(1) / areas.of(0) - dead_time;
+        if tau <= 0.0 {
+            return Err(Refusal::Plant {
+                must: "rise without swinging: the steepest tangent of its step response leaves it no time constant",
+                help: "use a rule that takes the plant as it is",
+            });
+        }
+        Self::new(plant.gain(), tau, dead_time, ms)
     }
 }

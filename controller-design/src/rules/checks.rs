@@ -55,9 +55,12 @@ pub(super) fn in_range(pid: PidConfig) -> Result<PidConfig, Refusal> {
     {
         Ok(pid)
     } else {
-        Err(Refusal::NoSolution {
-            why: "the gains do not fit into double precision",
-            help: "scale the plant: a gain and time constants near 1",
-        })
+        Err(OUT_OF_RANGE)
     }
 }
+
+/// Numbers that are too large or too small.
+pub(super) const OUT_OF_RANGE: Refusal = Refusal::NoSolution {
+    why: "the gains do not fit into double precision",
+    help: "scale the plant: a gain and time constants near 1",
+};

@@ -67,7 +67,7 @@ pub(super) fn gains(areas: &Areas, tf: f64) -> Result<PidConfig, Refusal> {
     if radicand.hi < 0.0 {
         return Err(Refusal::NoSolution {
             why: "the equations of DRMO have no real solution for this plant and filter",
-            help: "choose another tf, or use momi",
+            help: "choose another filter",
         });
     }
     // The second form of eq. (9) does not cancel and holds for alpha = 0 as well.

@@ -50,7 +50,7 @@ impl Inflexion {
         if total.is_nan() || total <= 0.0 {
             return Err(Refusal::Plant {
                 must: "have a positive A_1/A_0: its output must on the whole follow its input",
-                help: "use a rule for the shape of the frequency response, such as pi-ms",
+                help: "use a rule for the shape of the frequency response",
             });
         }
         let slope = |t: f64| inverse(t, |s| shape(plant, s));

@@ -22,7 +22,7 @@ pub(super) struct Normalised {
 /// What a process without usable areas is told.
 const NOT_SELF_REGULATING: Refusal = Refusal::Plant {
     must: "have a positive A_1/A_0: its output must on the whole follow its input",
-    help: "use a rule for the shape of the frequency response, such as pi-ms; recorded areas: check the record",
+    help: "use a rule for the shape of the frequency response; recorded areas: check the record",
 };
 
 impl Normalised {
@@ -83,10 +83,7 @@ impl Normalised {
         if fine(gains.kp) && fine(gains.ki) && gains.kd.is_finite() {
             Ok(gains)
         } else {
-            Err(Refusal::NoSolution {
-                why: "the gains do not fit into double precision",
-                help: "scale the plant: a gain and time constants near 1",
-            })
+            Err(checks::OUT_OF_RANGE)
         }
     }
 
@@ -102,8 +99,8 @@ impl Normalised {
         let terms = n4.hi.abs() + n23.hi.abs() + n5.hi.abs() + n33.hi.abs();
         if divisor.hi.is_nan() || divisor.hi.abs() <= 64.0 * self.error * terms {
             return Err(Refusal::NoSolution {
-                why: "the process and its filter are no more than two lags: any gain however large would do",
-                help: "set tf above 0 or a noise limit, add the dead time of the loop, or use a PI rule such as simc",
+                why: "the process and its filter are no more than two lags: the magnitude optimum has no largest gain",
+                help: "give the plant the dead time or the fast lags that were left out",
             });
         }
         let twice = divisor.times(2.0);
@@ -130,5 +127,5 @@ pub(super) struct DoubleGains {
 /// What is said when a gain acts in the wrong direction.
 pub(super) const WRONG_SIGN: Refusal = Refusal::NoSolution {
     why: "the magnitude optimum has gains of the wrong sign for this plant and filter",
-    help: "choose another tf, or a rule for the shape of the frequency response, such as pi-ms",
+    help: "choose another filter, or a rule for the shape of the frequency response",
 };

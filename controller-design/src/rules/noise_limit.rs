@@ -93,6 +93,31 @@ pub fn least_kpidn(areas: &Areas, rule: PidRule, ts: f64) -> f64 {
     Search { areas, rule, ts, limit: 0.0 }.run().least
 }
 
+/// The filter time constant with which a PID of given gains has the noise gain `kpidn`, at least `ts` \[s\] (Vrančić &
+/// Huba 2021, eq. (29)); 0 for a PI that has no more than that without a filter.
+///
+/// ```
+/// use controller_core::PidConfig;
+/// use controller_design::rules::noise_limit::{filter_time, kpidn};
+/// let pid = PidConfig { kp: 2.0, ki: 1.0, kd: 0.5, ..PidConfig::default() };
+/// let tf = filter_time(&pid, 3.0, 0.01)?;
+/// assert!((kpidn(&PidConfig { tf, ..pid }, 0.01) - 3.0).abs() < 1e-12);
+/// # Ok::<(), controller_design::Refusal>(())
+/// ```
+///
+/// # Errors
+/// `kpidn` or `ts` not above 0.
+pub fn filter_time(pid: &PidConfig, kpidn: f64, ts: f64) -> Result<f64, Refusal> {
+    checks::positive("kpidn", kpidn)?;
+    checks::positive("ts", ts)?;
+    let ratio = self::kpidn(&PidConfig { tf: 0.0, ..*pid }, ts) / kpidn;
+    if ratio <= 1.0 {
+        return Ok(if pid.kd == 0.0 { 0.0 } else { ts });
+    }
+    let tf = libm::sqrt((ratio - 1.0) * (ratio + 1.0)) / high_frequency(ts);
+    if tf.is_finite() { Ok(tf.max(ts)) } else { Err(checks::OUT_OF_RANGE) }
+}
+
 /// The PID with the shortest filter that keeps the noise limit.
 pub(super) fn shortest_filter(
     areas: &Areas,
@@ -113,7 +138,7 @@ pub(super) fn shortest_filter(
         let tf = if typical > 0.0 && typical.is_finite() { 0.1 * typical } else { ts };
         return Err(rule.gains(areas, tf).err().unwrap_or(Refusal::NoSolution {
             why: "no filter gives a controller for this plant",
-            help: "use a rule for the shape of the frequency response, such as pi-ms",
+            help: "use a rule for the shape of the frequency response",
         }));
     };
     let pid = rule.gains(areas, tf)?;

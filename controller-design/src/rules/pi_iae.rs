@@ -97,16 +97,22 @@ impl PiIae {
         if let Err(refusal @ Refusal::Plant { .. }) = ContinuousResponse::new(plant, &probe, None) {
             return Err(refusal);
         }
+        if plant.integrators() > 1 {
+            return Err(Refusal::Plant {
+                must: "have at most one integrator for a PI controller",
+                help: "close an inner loop around one of them and design for that loop",
+            });
+        }
         let limit = Limit::of(plant).ok_or(Refusal::NoSolution {
             why: "a PI controller can make the IAE of this plant as small as one likes",
-            help: "give the plant its dead time or its fast lags, or ask for a sensitivity peak instead",
+            help: "give the plant the dead time or the fast lags that were left out",
         })?;
         let search = Search { plant, limit, elements: Cell::new(0) };
         let start = search.start();
         search.within_budget()?;
         let mut best = start.ok_or(Refusal::NoSolution {
             why: "no PI controller was found that makes this plant stable",
-            help: "use a PID, or a rule for this kind of plant",
+            help: "a PI is too little for it: damp it first by an inner loop, or use a PID",
         })?;
         // The second descent shows whether the first one got stuck.
         for (size, end) in [(0.12, 4e-3), (0.02, 2e-4)] {
@@ -200,7 +206,7 @@ impl Search<'_> {
         }
         Err(Refusal::NoSolution {
             why: "the plant rings for too long to search for the least IAE",
-            help: "give the resonance more damping, or ask for a sensitivity peak instead: pi-ms",
+            help: "damp it first by an inner loop, or use a rule without such a search",
         })
     }
 

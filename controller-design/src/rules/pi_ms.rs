@@ -88,7 +88,7 @@ impl PiMs {
         if found.kp <= NO_GAIN * region.kp_hi() {
             return Err(Refusal::NoSolution {
                 why: "the largest integral gain goes with a proportional gain of 0 or less",
-                help: "the plant is lightly damped: damp it first with derivative action, or use a PID rule",
+                help: "the plant is lightly damped: damp it first by an inner loop, or use a PID",
             });
         }
         let gain = plant.gain();
@@ -121,7 +121,7 @@ impl PiMs {
 
 const UNBOUNDED: Refusal = Refusal::NoSolution {
     why: "the gains can grow without bound at this ms",
-    help: "give the plant the dead time or the fast lag it has, or choose gains by the noise they make",
+    help: "give the plant the dead time or the fast lags that were left out",
 };
 
 fn check(plant: &TransferFunction) -> Result<(), Refusal> {
@@ -134,7 +134,7 @@ fn check(plant: &TransferFunction) -> Result<(), Refusal> {
     if plant.integrators() > 1 {
         return Err(Refusal::Plant {
             must: "have at most one integrator for a PI controller",
-            help: "use a rule with derivative action",
+            help: "close an inner loop around one of them and design for that loop",
         });
     }
     for pole in plant.poles() {
@@ -148,7 +148,7 @@ fn check(plant: &TransferFunction) -> Result<(), Refusal> {
         if size > 0.0 && pole.re >= -AXIS * size {
             return Err(Refusal::Plant {
                 must: "have no undamped pair of poles",
-                help: "give the resonance the damping it has, and use a rule with derivative action",
+                help: "give the resonance the damping that it has",
             });
         }
     }

@@ -97,7 +97,7 @@ impl Shape {
         if kappa.hi - 1.0 > none {
             return Err(Refusal::Plant {
                 must: "have A_2*A_0 of at most A_1^2: no stable model of second order has such areas",
-                help: "use momi or drmo, which need no model; recorded areas: check the record",
+                help: "use a rule that needs no model; recorded areas: check the record",
             });
         }
         let without_delay = Self::plain(1.0, one.sub(n2).value().max(0.0));

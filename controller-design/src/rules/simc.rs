@@ -108,7 +108,7 @@ impl Simc {
         let Some((slow, fast)) = Factor::second(model.a1, model.a2).real_time_constants() else {
             return Err(Refusal::Plant {
                 must: "have real poles: the rule cancels lags, not oscillations",
-                help: "use momi, drmo or pi-ms",
+                help: "use a rule that takes the plant as it is",
             });
         };
         Self::with(model.gain, Slow::Lag(slow), fast, model.dead_time, tau_c)
