@@ -4,7 +4,7 @@ use crate::design_file;
 use crate::scenario::read;
 use crate::simulate::{Precision, RunOptions, run};
 use controller_design::Refusal;
-use controller_design::design::{Design, Method, Request, design};
+use controller_design::design::{AdrcGain, Design, Method, Request, design};
 use controller_design::model::TransferFunction;
 
 /// Delay margin in samples below which a sampling period is too long.
@@ -15,6 +15,9 @@ const FINE: f64 = 2e4;
 /// Delay margin in samples above which it could be much longer.
 const MANY_SAMPLES: f64 = 200.0;
 
+/// Noise gain over the least one from which it is worth a word.
+const NOISY: f64 = 5.0;
+
 /// What comes of every rule on a plant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
@@ -24,6 +27,10 @@ pub struct Advice {
     pub ts: f64,
     /// One row for each rule, in the order of [`Method::ALL`].
     pub rows: Vec<Row>,
+    /// The options that were given, by their names in files.
+    pub options: Vec<&'static str>,
+    /// Whether the gain of the ADRC was searched for.
+    pub searches_b0: bool,
 }
 
 /// One rule.
@@ -55,6 +62,29 @@ impl Outcome {
 }
 
 impl Advice {
+    /// Which rules looked at each option that was given, a sentence each.
+    #[must_use]
+    pub fn on_the_options(&self) -> Vec<String> {
+        let used = |option: &&str| format!("{option} is used by {} only", Method::that_look_at(option));
+        let mut notes: Vec<String> = self.options.iter().map(used).collect();
+        if self.searches_b0 {
+            notes.push(
+                "adrc: b0 is searched for, as by `--b0 search`; without that the rule takes its model's"
+                    .to_owned(),
+            );
+        }
+        notes
+    }
+
+    /// The noise gain of a row over the least of all, when it is more than 5 times that, and whose that is.
+    #[must_use]
+    pub fn noise_over_least(&self, row: &Row) -> Option<(f64, Method)> {
+        let noise = |row: &Row| Some((row.outcome.as_ref().ok()?.design.sampled.noise.white, row.method));
+        let least = self.rows.iter().filter_map(noise).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let ratio = noise(row)?.0 / least.0;
+        (ratio > NOISY && ratio.is_finite()).then_some((ratio, least.1))
+    }
+
     /// Whether the sampling period fits, in a sentence.
     #[must_use]
     pub fn on_the_period(&self) -> String {
@@ -88,7 +118,13 @@ pub fn advise(plant: &TransferFunction, ts: f64, request: impl Fn(Method) -> Req
         method,
         outcome: design(plant, &request(method)).and_then(|made| simulated(made).ok_or(UNSETTLED)),
     };
-    Advice { plant: plant.clone(), ts, rows: Method::ALL.into_iter().map(row).collect() }
+    Advice {
+        plant: plant.clone(),
+        ts,
+        rows: Method::ALL.into_iter().map(row).collect(),
+        options: Vec::new(),
+        searches_b0: request(Method::Adrc).b0 == AdrcGain::Search,
+    }
 }
 
 const UNSETTLED: Refusal =

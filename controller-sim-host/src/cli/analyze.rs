@@ -21,12 +21,11 @@ pub(super) struct AnalyzeArguments {
     /// A scenario or design file; `-` reads it from the standard input
     #[arg(required_unless_present = "plant", value_name = "FILE", value_hint = ValueHint::FilePath)]
     file: Option<PathBuf>,
-    /// The plant, such as `exp(-s)/(1+s)^2`, in place of a file
+    /// The plant, such as `exp(-s)/(1+s)^2`, in place of a file; needs --ts
     #[arg(
         long,
         value_name = "EXPR",
         conflicts_with_all = ["file", "set"],
-        requires = "ts",
         allow_hyphen_values = true,
         help_heading = LOOP
     )]
@@ -43,7 +42,7 @@ pub(super) struct AnalyzeArguments {
     /// Time constant of the filter in seconds
     #[arg(long, value_name = "S", requires = "plant", allow_negative_numbers = true, help_heading = LOOP)]
     tf: Option<f64>,
-    /// Sampling period in seconds
+    /// Sampling period in seconds: the margins are those of the law as it is sampled
     #[arg(long, value_name = "S", requires = "plant", allow_negative_numbers = true, help_heading = LOOP)]
     ts: Option<f64>,
     /// Time from reading y to acting u in seconds
@@ -70,6 +69,11 @@ const TYPED: &str = "<command line>";
 
 /// `analyze`: `command` is what was typed.
 pub(super) fn run(arguments: &AnalyzeArguments, json: bool, command: &str) -> Result<(), Failure> {
+    if arguments.plant.is_some() && arguments.ts.is_none() {
+        let message = "`--plant` needs `--ts`: the loop is analysed with the sampled law that runs";
+        let help = "give the sampling period in seconds, such as `--ts 0.01`; `design` shows a fitting one for the plant";
+        return Err(Problem::new("usage", message).help(help).into());
+    }
     let options = Options { set: arguments.set.clone(), ..Options::default() };
     let inputs = match (&arguments.plant, &arguments.file) {
         (Some(plant), _) => read_text(TYPED, typed(arguments, plant), &options),

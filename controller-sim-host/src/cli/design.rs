@@ -2,14 +2,14 @@
 
 use super::arguments::DesignArguments;
 use super::quoting::quoted;
-use super::wish::usual_period;
+use super::wish::{flag, usual_period};
 use super::{EXIT_REFUSED, Failure, print};
 use crate::advise::advise;
 use crate::design_file;
 use crate::output::{self, FileTarget, Problem, Trouble};
 use crate::scenario::{Fault, SourceText, code};
 use controller_design::Refusal;
-use controller_design::design::{Method, design};
+use controller_design::design::{Method, Remedy, Request, design, remedies};
 use controller_design::model::{TransferFunction, parse};
 
 /// `design`: `command` is what was typed.
@@ -21,7 +21,8 @@ pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Res
             let problem = Problem::new("usage", "`--save` needs one method; `advise` compares all of them");
             return Err(problem.help("choose one of them, then save it").into());
         }
-        let advice = advise(&plant, ts, |method| arguments.wish.request(method, ts, None));
+        let mut advice = advise(&plant, ts, |method| arguments.wish.compared(method, ts, None));
+        advice.options = arguments.wish.given();
         if advice.rows.iter().all(|row| row.outcome.is_err()) {
             let refusals = advice.rows.iter().filter_map(|row| {
                 let refusal = row.outcome.as_ref().err()?;
@@ -40,7 +41,8 @@ pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Res
         return Err(Problem::new("file", message).help("give a file: `--save loop.toml`").into());
     }
     let target = arguments.save.as_ref().map(|path| FileTarget::new(path, arguments.force)).transpose()?;
-    let made = design(&plant, &arguments.wish.request(method, ts, None)).map_err(|r| refused(method, &r))?;
+    let request = arguments.wish.request(method, ts, None);
+    let made = design(&plant, &request).map_err(|refusal| with_remedies(&plant, &request, &refusal))?;
     if let Some(target) = &target {
         let mut file = design_file::of(&made, arguments.wish.limits, command);
         if let Some(name) = &arguments.wish.name {
@@ -71,14 +73,38 @@ pub(super) fn plant(text: &str) -> Result<TransferFunction, Failure> {
     })
 }
 
+/// A number that was typed and cannot be is a mistake of whoever typed it.
+fn is_typed(method: Method, refusal: &Refusal) -> bool {
+    let Refusal::OutOfRange { parameter, .. } = refusal else { return false };
+    matches!(*parameter, "ts" | "latency") || method.options().contains(parameter)
+}
+
+/// The same with what does work on the plant, as it is typed.
+fn with_remedies(plant: &TransferFunction, request: &Request, refusal: &Refusal) -> Failure {
+    let method = request.method;
+    if is_typed(method, refusal) {
+        return refused(method, refusal);
+    }
+    let typed = |Remedy { request, option }: Remedy| {
+        let option = option.map_or(String::new(), |(name, value)| format!(" {} {value}", flag(name)));
+        format!("`--method {}{option}`", request.method.name())
+    };
+    let works: Vec<String> = remedies(plant, request).into_iter().map(typed).collect();
+    let help = match &*works {
+        [] => refusal.help().to_owned(),
+        works => format!("{}; on this plant these work: {}", refusal.help(), works.join(", ")),
+    };
+    Failure::refused(no_design(method, refusal).help(help))
+}
+
+fn no_design(method: Method, refusal: &Refusal) -> Problem {
+    Problem::new("refused", format!("no design by {}: {refusal}", method.name()))
+}
+
 /// What a rule refuses: well-formed input without a result.
 pub(super) fn refused(method: Method, refusal: &Refusal) -> Failure {
-    // A number that was typed and cannot be is a mistake of whoever typed it.
-    if let Refusal::OutOfRange { parameter, .. } = refusal
-        && (matches!(*parameter, "ts" | "latency") || method.options().contains(parameter))
-    {
+    if is_typed(method, refusal) {
         return Problem::new("usage", format!("{}: {refusal}", method.name())).help(refusal.help()).into();
     }
-    let message = format!("no design by {}: {refusal}", method.name());
-    Failure::refused(Problem::new("refused", message).help(refusal.help()))
+    Failure::refused(no_design(method, refusal).help(refusal.help()))
 }

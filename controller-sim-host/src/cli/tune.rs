@@ -136,9 +136,10 @@ fn compare(arguments: &TuneArguments, json: bool) -> Result<(), Failure> {
     let found = identify(&recording, &IdentifyOptions::default());
     let plant =
         found.and_then(|found| plant_of(&found, ts)).map_err(|refusal| unusable(&source, &log, &refusal))?;
-    let advice = advise(&plant, ts, |method| {
-        arguments.wish.request(method, ts, Some(MS_MAX).filter(|_| method.has_block()))
+    let mut advice = advise(&plant, ts, |method| {
+        arguments.wish.compared(method, ts, Some(MS_MAX).filter(|_| method.has_block()))
     });
+    advice.options = arguments.wish.given();
     Ok(print(&if json { advice_json(&advice) } else { advice_table(&advice) })?)
 }
 

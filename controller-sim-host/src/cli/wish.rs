@@ -2,7 +2,7 @@
 
 use crate::output::Problem;
 use clap::Args;
-use controller_design::design::{EstimatorFilter, Filter, Method, ObserverFilter, Request};
+use controller_design::design::{AdrcGain, EstimatorFilter, Filter, Method, ObserverFilter, Request};
 use controller_design::model::TransferFunction;
 
 /// What is asked of a design.
@@ -11,7 +11,8 @@ pub(super) struct Wish {
     /// Time constant of the PID's filter \[s\]
     #[arg(long, value_name = "S", value_parser = time, conflicts_with = "kpidn")]
     tf: Option<f64>,
-    /// Noise gain of the PID at a quarter of the sampling frequency [u/y]; default 4/|K|, or what is attainable
+    /// Noise gain of the PID at a quarter of the sampling frequency [u/y]; default 4/|K|, or what is attainable (momi,
+    /// drmo, de-momi), or what a filter of a tenth of the derivative time leaves (ah, amigo, simc)
     #[arg(long, value_name = "G", value_parser = positive)]
     kpidn: Option<f64>,
     /// Time constant of the disturbance estimator's filter \[s\] (de-momi)
@@ -35,6 +36,10 @@ pub(super) struct Wish {
     /// Index after a unit load to choose the observer's filter for (dob): iae, ise, itae, e_max, or ramp_ie for a ramp
     #[arg(long, value_name = "INDEX=VALUE", value_parser = index)]
     want: Option<Index>,
+    /// Gain at high frequencies that the controller is given (adrc): `model` takes it from the plant's second-order model,
+    /// `search` the one with the most integral gain within --ms; default: model, in a comparison search
+    #[arg(long, value_name = "model|search|G", value_parser = gain, allow_negative_numbers = true)]
+    b0: Option<Gain>,
     /// Time constant of the closed loop \[s\] (simc); default: the dead time
     #[arg(long, value_name = "S", value_parser = positive)]
     tau_c: Option<f64>,
@@ -62,35 +67,63 @@ impl Wish {
         let filter = filter.or(self.want.map(|Index(wish)| ObserverFilter::Wanted(wish)));
         request.observer_filter = filter.unwrap_or(request.observer_filter);
         request.ms = self.ms;
+        request.b0 = self.b0.map_or(request.b0, |Gain(b0)| b0);
         request.tau_c = self.tau_c;
         request.ms_max = self.ms_max.or(ms_max);
         request
     }
 
-    /// Options that mean nothing to `method`.
-    pub(super) fn idle(&self, method: Method) -> Vec<Problem> {
-        let given = [
+    /// The request for `method` among all others: an ADRC whose gain is not given has it searched for, since that of the
+    /// model, the rule's own, compares badly on plants with dead time.
+    pub(super) fn compared(&self, method: Method, ts: f64, ms_max: Option<f64>) -> Request {
+        let request = self.request(method, ts, ms_max);
+        Request { b0: self.b0.map_or(AdrcGain::Search, |Gain(b0)| b0), ..request }
+    }
+
+    /// The options for a rule that were given, by their names in files.
+    pub(super) fn given(&self) -> Vec<&'static str> {
+        let all = [
             ("tf", self.tf.is_some()),
             ("kpidn", self.kpidn.is_some()),
             ("tfd", self.tfd.is_some()),
             ("kden", self.kden.is_some()),
             ("ms", self.ms.is_some()),
             ("ms_max", self.ms_max.is_some()),
+            ("b0", self.b0.is_some()),
             ("tau_c", self.tau_c.is_some()),
             ("noise_ratio", self.noise_ratio.is_some()),
             ("alpha", self.alpha.is_some()),
             ("want", self.want.is_some()),
         ];
-        let idle =
-            given.into_iter().filter(|(option, is_given)| *is_given && !method.options().contains(option));
-        idle.map(|(option, _)| {
-            let of = Method::ALL.into_iter().filter(|method| method.options().contains(&option));
-            let of: Vec<&str> = of.map(Method::name).collect();
-            let option = option.replace('_', "-");
-            Problem::new("usage", format!("`--{option}` means nothing to the method {}", method.name()))
-                .help(format!("it belongs to {}", of.join(", ")))
+        all.into_iter().filter_map(|(option, is_given)| is_given.then_some(option)).collect()
+    }
+
+    /// Options that mean nothing to `method`.
+    pub(super) fn idle(&self, method: Method) -> Vec<Problem> {
+        let idle = self.given().into_iter().filter(|option| !method.options().contains(option));
+        idle.map(|option| {
+            let message = format!("`{}` means nothing to the method {}", flag(option), method.name());
+            Problem::new("usage", message).help(format!("it belongs to {}", Method::that_look_at(option)))
         })
         .collect()
+    }
+}
+
+/// An option as it is typed.
+pub(super) fn flag(option: &str) -> String {
+    format!("--{}", option.replace('_', "-"))
+}
+
+/// The gain of an ADRC, as it is read.
+#[derive(Debug, Clone, Copy)]
+struct Gain(AdrcGain);
+
+fn gain(text: &str) -> Result<Gain, String> {
+    match (text.trim(), number(text)) {
+        ("model", _) => Ok(Gain(AdrcGain::Model)),
+        ("search", _) => Ok(Gain(AdrcGain::Search)),
+        (_, Ok(b0)) if b0 != 0.0 => Ok(Gain(AdrcGain::Value(b0))),
+        _ => Err("write `model`, `search` or a number other than 0".to_owned()),
     }
 }
 

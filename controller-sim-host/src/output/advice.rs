@@ -43,13 +43,20 @@ pub fn advice_table(advice: &Advice) -> String {
         "noise: std(u)/std(n) for white noise on the measurement [u/y]; delay margin [s], and in samples"
             .to_owned(),
     );
+    line(
+        "at the same noise gain compare with `--kpidn G`, which the PID rules keep by their filters"
+            .to_owned(),
+    );
     line("! little robustness: Ms above 2; `--ms-max 2` slows the block of de-momi and dob down".to_owned());
     line(format!("\n{}", advice.on_the_period()));
+    for note in advice.on_the_options() {
+        line(note);
+    }
     line("\ntake it when".to_owned());
     for row in &advice.rows {
         let name = row.method.name();
         let said = match &row.outcome {
-            Ok(_) => row.method.when().to_owned(),
+            Ok(_) => format!("{}{}", row.method.when(), noisy(advice, row)),
             Err(refusal) => format!("refused: {refusal}; {}", refusal.help()),
         };
         for (index, part) in wrapped(&said, 86).into_iter().enumerate() {
@@ -57,6 +64,13 @@ pub fn advice_table(advice: &Advice) -> String {
         }
     }
     out
+}
+
+/// What to add of the noise, if it is much.
+fn noisy(advice: &Advice, row: &Row) -> String {
+    advice.noise_over_least(row).map_or(String::new(), |(ratio, least)| {
+        format!("; {ratio:.0} times the noise gain of {}, the least", least.name())
+    })
 }
 
 fn numbers(made: &Outcome) -> [f64; 6] {
@@ -94,6 +108,7 @@ struct Comparison<'a> {
     plant: String,
     ts: f64,
     period: String,
+    notes: Vec<String>,
     methods: Vec<Entry<'a>>,
 }
 
@@ -104,6 +119,7 @@ struct Entry<'a> {
     iae_setpoint: Option<f64>,
     iae_load: Option<f64>,
     delay_margin_samples: Option<f64>,
+    noise_over_least: Option<f64>,
     design: Option<Designed<'a>>,
     refused: Option<String>,
     help: Option<&'static str>,
@@ -117,11 +133,12 @@ pub fn advice_json(advice: &Advice) -> String {
         plant: advice.plant.to_string(),
         ts: advice.ts,
         period: advice.on_the_period(),
-        methods: advice.rows.iter().map(entry).collect(),
+        notes: advice.on_the_options(),
+        methods: advice.rows.iter().map(|row| entry(advice, row)).collect(),
     })
 }
 
-fn entry(row: &Row) -> Entry<'_> {
+fn entry<'a>(advice: &Advice, row: &'a Row) -> Entry<'a> {
     let (made, refusal) = (row.outcome.as_ref().ok(), row.outcome.as_ref().err());
     Entry {
         method: row.method.name(),
@@ -129,6 +146,7 @@ fn entry(row: &Row) -> Entry<'_> {
         iae_setpoint: made.map(|made| made.iae_setpoint),
         iae_load: made.map(|made| made.iae_load),
         delay_margin_samples: made.map(Outcome::delay_margin_samples),
+        noise_over_least: advice.noise_over_least(row).map(|(ratio, _)| ratio),
         design: made.map(|made| Designed::new(&made.design, None)),
         refused: refusal.map(ToString::to_string),
         help: refusal.map(|refusal| refusal.help()),

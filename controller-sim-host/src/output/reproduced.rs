@@ -142,6 +142,7 @@ fn push_summary(text: &mut String, report: &Report) {
 
 #[derive(Serialize)]
 struct Object<'a> {
+    version: &'static str,
     tables: Vec<TableObject<'a>>,
     differing: usize,
 }
@@ -183,7 +184,7 @@ impl<'a> From<&'a Cell> for CellObject<'a> {
     }
 }
 
-/// The tables as JSON: `{"tables": [{"paper", "table", "title", "trouble", "cells": [{"row", "quantity", "printed", "true",
+/// The tables as JSON: `{"version", "tables": [{"paper", "table", "title", "trouble", "cells": [{"row", "quantity", "printed", "true",
 /// "ours", "tolerance", "verdict", "reason"}]}], "differing"}`; `tolerance` is the largest difference that is allowed.
 #[must_use]
 pub fn reproduced_json(report: &Report) -> String {
@@ -194,7 +195,11 @@ pub fn reproduced_json(report: &Report) -> String {
         trouble: table.trouble.as_deref(),
         cells: table.cells.iter().map(CellObject::from).collect(),
     });
-    json_text(&Object { tables: tables.collect(), differing: report.differing() })
+    json_text(&Object {
+        version: env!("CARGO_PKG_VERSION"),
+        tables: tables.collect(),
+        differing: report.differing(),
+    })
 }
 
 #[cfg(test)]

@@ -93,12 +93,113 @@ fn mistakes_and_refusals_are_told_apart() {
     assert!(folder.names().is_empty());
 }
 
+/// Plants that many rules refuse, most of them for a reason of their own.
+const AWKWARD: [&str; 16] = [
+    "1/(1+s)",
+    "exp(-2*s)",
+    "1/((1+s)*(1+0.2*s))",
+    "-3e4/(1+0.1*s+s^2)",
+    "1/(s-1)",
+    "exp(-0.2*s)/(s-1)",
+    "-2/s",
+    "exp(-s)/s",
+    "1/s^2",
+    "s/(1+s)^2",
+    "(1+s)/(1+2*s)",
+    "3*exp(-50*s)/(1+s)",
+    "exp(-1e-7*s)/(1+2e-7*s+1e-12*s^2)",
+    "(1+10*s)*exp(-0.1*s)/((1+s)*(1+0.2*s))",
+    "exp(-0.01*s)/(1+s)",
+    "(1-3*s)/(1+s)^2",
+];
+/// What no rule can do anything with.
+const HOPELESS: [&str; 4] = ["1/(s-1)", "exp(-0.2*s)/(s-1)", "1/s^2", "s/(1+s)^2"];
+
+/// What the help of a refusal names, in the words of the command line.
+fn named(help: &str) -> Vec<Vec<&str>> {
+    let quoted = help.split('`').skip(1).step_by(2);
+    quoted.filter(|part| part.starts_with("--method ")).map(|part| part.split(' ').collect()).collect()
+}
+
+/// Every method and option that a refusal names gives a robust loop; nothing is named otherwise.
+#[test]
+fn the_help_of_a_refusal_helps() {
+    let folder = Folder::new("design-help");
+    let mut followed = 0;
+    let mut known: Vec<(&str, Vec<String>)> = Vec::new();
+    for plant in AWKWARD {
+        for (method, more) in METHODS.map(|method| (method, None)).into_iter().chain([("momi", Some("4"))]) {
+            let kpidn = more.map_or(vec![], |gain| vec!["--kpidn", gain]);
+            let base = ["design", "--plant", plant, "--json"];
+            let output = folder.run(&[&base[..], &["--method", method], &kpidn].concat());
+            if output.status.code() == Some(0) {
+                continue;
+            }
+            assert_eq!(output.status.code(), Some(3), "{plant} {method}");
+            let error = json(&output);
+            let (message, help) = (&error["error"]["message"], error["error"]["help"].as_str().unwrap_or(""));
+            assert!(!message.to_string().contains("tau = -"), "{message}");
+            let ways = named(help);
+            assert_eq!(ways.is_empty(), HOPELESS.contains(&plant), "{plant} {method}: {help}");
+            // The words before speak of no method by its name.
+            let words = help.split("; on this plant").next().unwrap_or("").replace([',', ';', ':'], " ");
+            assert!(words.split(' ').all(|word| !METHODS.contains(&word)), "{plant} {method}: {help}");
+            for way in ways {
+                let way: Vec<String> = way.into_iter().map(str::to_owned).collect();
+                if known.contains(&(plant, way.clone())) {
+                    continue;
+                }
+                let way_str: Vec<&str> = way.iter().map(String::as_str).collect();
+                let made = folder.run(&[&base[..], &way_str].concat());
+                assert_eq!(made.status.code(), Some(0), "{plant} {method}: {help}");
+                let ms = number(&json(&made)["discrete"]["robustness"]["ms"]);
+                assert!(ms <= 2.0, "{plant} {method}: {way:?} gives {ms}");
+                followed += 1;
+                known.push((plant, way));
+            }
+        }
+    }
+    assert!(followed >= 20, "{followed}");
+}
+
+/// A given option is used or named as not used, and ADRC's searched gain can be had alone.
+#[test]
+fn advise_says_who_used_an_option() {
+    let folder = Folder::new("advise-options");
+    let base = ["design", "--plant", PLANT, "--ts", "0.01", "--method"];
+    let shown = folder.done(&[&base[..], &["advise", "--kpidn", "3", "--ms", "1.4"]].concat());
+    assert!(shown.contains("kpidn is used by momi, drmo, de-momi, ah, amigo, simc only"), "{shown}");
+    assert!(shown.contains("ms is used by pi-ms, dob, ah, adrc only"), "{shown}");
+    let advice = json(&folder.run(&[&base[..], &["advise", "--kpidn", "3", "--json"]].concat()));
+    for row in advice["methods"].as_array().expect("rows") {
+        let method = row["method"].as_str().expect("a name");
+        if ["momi", "ah", "amigo", "simc"].contains(&method) {
+            let kpidn = number(&row["design"]["noise"]["kpidn"]);
+            assert!((kpidn / 3.0 - 1.0).abs() < 1e-6, "{method}: {kpidn}");
+        }
+    }
+    let row = &advice["methods"][7];
+    let alone = |more: &[&str]| json(&folder.run(&[&base[..], &["adrc", "--json"], more].concat()));
+    let (searched, plain) = (alone(&["--b0", "search"]), alone(&[]));
+    assert_eq!(row["design"]["adrc"], searched["adrc"]);
+    // The model's: 1/0.2.
+    assert!((number(&plain["adrc"]["b0"]) - 5.0).abs() < 1e-9, "{plain}");
+    let load = |made: &Value| number(&made["predicted"]["ie_load"]).abs();
+    assert!(load(&searched) < 0.2 * load(&plain));
+    assert!(number(&searched["robustness"]["ms"]) <= 1.6);
+    let again = alone(&["--b0", &searched["adrc"]["b0"].to_string()]);
+    assert!((number(&again["adrc"]["kp"]) / number(&searched["adrc"]["kp"]) - 1.0).abs() < 0.25);
+    let shown = folder.refused(&[&base[..], &["adrc", "--b0", "-5"]].concat());
+    assert!(shown.contains("b0 = -5 is outside"), "{shown}");
+}
+
 #[test]
 fn advise_has_a_row_for_every_method() {
     let folder = Folder::new("advise");
     let arguments = ["design", "--plant", PLANT, "--method", "advise", "--ts", "0.01"];
     let shown = folder.done(&arguments);
     assert!(shown.contains("ts = 0.01 s fits") && !shown.contains("refused"), "{shown}");
+    assert!(shown.contains("times the noise gain of pi-ms, the least"), "{shown}");
     assert!(shown.lines().all(|line| line.chars().count() <= 100), "{shown}");
     let advice = json(&folder.run(&[&arguments[..], &["--json"]].concat()));
     check(&advice);
