@@ -107,3 +107,30 @@ fn derivatives_too_large_for_a_lag_are_told() {
         assert!(Inflexion::of(&parse(plant).unwrap()).is_err(), "{plant}");
     }
 }
+
+/// As a method the rule keeps to plants like those it was fitted to; on a truly first-order plant with a short dead time it
+/// would give an `Ms` of 2.3 to 18, or none.
+#[test]
+fn the_method_refuses_what_the_rule_does_not_fit() {
+    use controller_design::design::{Law, Method, Request, design};
+    let ask = |plant: &str, ms: f64| {
+        design(&parse(plant).unwrap(), &Request { ms: Some(ms), ..Request::new(Method::Ah, 1e-3) })
+    };
+    for wanted in [1.4, 2.0] {
+        for plant in ["exp(-0.1*s)/(1+s)", "exp(-0.3*s)/(1+s)", "1/(1+0.8*s+s^2)", "1/(1+0.1*s+s^2)"] {
+            assert!(ask(plant, wanted).is_err(), "{plant}");
+        }
+        for plant in [
+            "exp(-0.6*s)/(1+s)",
+            "1/((1+s)*(1+0.2*s)*(1+0.04*s)*(1+0.008*s))",
+            "exp(-5*s)/(1+s)^3",
+            "(1-s)/(1+s)^3",
+        ] {
+            let made = ask(plant, wanted).unwrap();
+            let rule = if wanted < 1.5 { AhMs::Ms14 } else { AhMs::Ms20 };
+            let own = AhPid::of_plant(&parse(plant).unwrap(), rule).unwrap().pid;
+            assert!(matches!(made.law, Law::Pid { pid, .. } if pid.kp == own.kp && pid.kd == own.kd));
+            assert!(made.robustness.ms <= 1.5 * wanted, "{plant}: {}", made.robustness.ms);
+        }
+    }
+}

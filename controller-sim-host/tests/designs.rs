@@ -42,8 +42,14 @@ fn events(scenario: &Scenario) -> [Metrics; 2] {
     [events[0].metrics, events[1].metrics]
 }
 
+/// `exp(-14)`.
+const LEFT: f64 = 8.4e-7;
+
 /// Closed forms for `ts*sum(e)`: `(1/K + (1-b)*kp)/ki` for the set-point, `-1/ki`, `-(1-kfd)/ki` or 0 for the load; of an
-/// ADRC those of its sampled observer. Only the tail that the window cuts off, is missing: some 1e-4 where the loop swings slowly.
+/// ADRC those of its sampled observer. Only the tail that the window cuts off is missing: the window has 14 of the slowest
+/// times, so that a mode with all of the IAE leaves exp(-14) of it, 1e-6; the estimate of the slowest time may be a quarter too
+/// short where lags and dead time add up in a loop that swings: exp(-10.8), 2e-5. The load's window begins with what is left
+/// of the set-point's response, exp(-14) of that, which is much where the plant's gain is small.
 #[test]
 fn every_method_gives_the_integrals_of_the_error_that_it_predicts() {
     let mut counts = [0; Method::ALL.len()];
@@ -60,7 +66,8 @@ fn every_method_gives_the_integrals_of_the_error_that_it_predicts() {
                     [("set-point", predicted[0], &setpoint), ("load", predicted[1], &load)]
                 {
                     let expected = expected.expect("a prediction");
-                    let tolerance = 3e-4 * found.iae.max(expected.abs());
+                    let before = if what == "load" { LEFT * setpoint.iae } else { 0.0 };
+                    let tolerance = 2e-5 * found.iae.max(expected.abs()) + before;
                     assert!(
                         (found.ie - expected).abs() <= tolerance,
                         "{plant}, {}, latency {latency}, {what}: {} instead of {expected}",
@@ -75,11 +82,14 @@ fn every_method_gives_the_integrals_of_the_error_that_it_predicts() {
     assert!(counts.iter().all(|count| *count >= 10), "{counts:?}");
 }
 
-/// The IAE of the optimum is that of the continuous loop; the sampled one adds half a sample of delay, an error of the
-/// order of `ts`, of which Richardson's extrapolation leaves the square.
+/// The IAE of the optimum is that of the continuous loop to 1e-4; the sampled one adds half a sample to the dead time, with
+/// the square of which the IAE grows at most (it does for an integrator): `ts/dead_time`, of which Richardson's extrapolation
+/// leaves the square.
 #[test]
 fn the_least_iae_is_found_in_the_run() {
-    for plant in ["2*exp(-0.3*s)/(1+0.9*s)", "-0.5*exp(-s)/s", "exp(-0.4*s)/(1+s)^3"] {
+    for (plant, dead_time) in
+        [("2*exp(-0.3*s)/(1+0.9*s)", 0.3), ("-0.5*exp(-s)/s", 1.0), ("exp(-0.4*s)/(1+s)^3", 0.4)]
+    {
         let of = |ts: f64| {
             let made = made(plant, &Request::new(Method::PiIae, ts)).expect("a design");
             let expected = made.predicted.iae_load.expect("its IAE");
@@ -87,8 +97,12 @@ fn the_least_iae_is_found_in_the_run() {
         };
         let ((coarse, expected), (fine, _)) = (of(0.004), of(0.002));
         let limit = 2.0 * fine - coarse;
-        assert!((limit / expected - 1.0).abs() < 2e-3, "{plant}: {limit} instead of {expected}");
-        assert!((fine / expected - 1.0).abs() < 0.03, "{plant}: {fine} instead of {expected}");
+        let (half, square) = (0.002 / dead_time, (0.004 / dead_time) * (0.004 / dead_time));
+        assert!((limit / expected - 1.0).abs() < square + 1e-4, "{plant}: {limit} instead of {expected}");
+        assert!(
+            (fine / expected - 1.0).abs() < half * (1.0 + half) + 1e-4,
+            "{plant}: {fine} instead of {expected}"
+        );
     }
 }
 

@@ -33,7 +33,7 @@ const SAMPLES: f64 = 20.0;
 /// let refused = Request::new(Method::Momi, 0.01);
 /// assert!(design(&plant, &refused).is_err());
 /// let found = remedies(&plant, &refused);
-/// assert_eq!((found[0].request.method, found[0].option), (Method::Simc, Some(("tau_c", 0.2))));
+/// assert_eq!((found[0].request.method, found[0].option), (Method::Simc, Some(("tau_c", 0.25))));
 /// ```
 #[must_use]
 pub fn remedies(plant: &TransferFunction, refused: &Request) -> Vec<Remedy> {

@@ -48,7 +48,8 @@ fn every_design_is_saved_run_and_analysed() {
             let metrics = &events[event]["metrics"];
             let (ie, expected) = (number(&metrics["ie"]), number(&made["predicted"][key]));
             assert!(
-                (ie - expected).abs() <= 3e-4 * number(&metrics["iae"]),
+                // As in `designs.rs`: what is left after the window.
+                (ie - expected).abs() <= 2e-5 * number(&metrics["iae"]),
                 "{method}, {key}: {ie}, {expected}"
             );
         }
