@@ -176,7 +176,7 @@ fn unusable_records_are_refused_with_the_reason() {
     let pulse: Vec<f64> = t.iter().map(|t| if (0.0..3.0).contains(t) { 1.0 } else { 0.0 }).collect();
     assert!(why(&t, &pulse, &process.output(&t, &pulse)).contains("ends where it began"));
     let ramp: Vec<f64> = t.iter().map(|t| t.max(0.0)).collect();
-    assert!(why(&t, &u, &ramp).contains("before the output is at rest"));
+    assert!(why(&t, &u, &ramp).contains("the process integrates"));
     let mut random = Random::new(3);
     let noise: Vec<f64> = t.iter().map(|_| random.normal()).collect();
     assert!(why(&t, &u, &noise).contains("did not move"));

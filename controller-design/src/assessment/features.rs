@@ -24,6 +24,8 @@ const ALL_WITHIN: f64 = 12.0;
 /// Least rise after a dip, in first peaks and in standard deviations of the smoothed noise.
 const RISE: f64 = 0.02;
 const RISE_NOISE: f64 = 4.0;
+/// A dip is marked from this depth on, in standard deviations of a sample.
+const VISIBLE: f64 = 2.0;
 /// Shortest record after the step, in peak times.
 const SHORTEST: f64 = 4.0;
 /// Fewest samples until the first peak, and from how many on the times are good.
@@ -130,7 +132,10 @@ pub(super) fn measure(record: &Record, out: &mut Assessment) -> Result<Shape, Re
         (curve.vertex(k), curve.vertex(third))
     });
     if let Some((low, high)) = dip {
-        (marks.dip, marks.third) = (Some(place(low)), Some(place(high)));
+        // A picture that marks what no eye can see in the recorded points is not believed.
+        if (level(high.1) - level(low.1)) * p1 >= VISIBLE * sigma {
+            (marks.dip, marks.third) = (Some(place(low)), Some(place(high)));
+        }
         out.marks = Some(marks);
         features.dip = Some(level(low.1));
         features.t_ratio = Some((low.0 - t0) / t1);

@@ -80,7 +80,7 @@ pub enum Change {
 /// What to change in the controller: a step of 10 to 30 % at a time, then repeat the experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Changes {
-    /// The gain.
+    /// The gain, in size.
     pub kp: Option<Change>,
     /// The integral time.
     pub ti: Option<Change>,

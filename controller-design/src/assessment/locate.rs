@@ -92,9 +92,24 @@ impl Record {
             range.filter(stands_out).fold(Some(first), larger)
         };
         // Of the first samples too little is known to tell, unless it is clear.
+        let later = || (FEWEST..self.len()).map(|k| self.jump(k)).fold(0.0, f64::max);
         match (among(1..FEWEST.min(self.len())), among(FEWEST..self.len())) {
             (Some(early), Some(late)) if self.jump(early) <= JUMP * self.jump(late) => Ok(late),
-            (early, late) => early.or(late).ok_or(Reason::NoStep),
+            // What later jumps come close to, noise mostly, is no step.
+            (Some(early), None) if self.jump(early) <= JUMP * later() => Err(self.no_step()),
+            (early, late) => early.or(late).ok_or_else(|| self.no_step()),
+        }
+    }
+
+    /// What the record shows in place of a step.
+    fn no_step(&self) -> Reason {
+        let moves = |list: &[f64]| list.windows(2).any(|pair| pair[0] != pair[1]);
+        if self.len() >= FEWEST && !moves(&self.co) {
+            Reason::OutputConstant
+        } else if moves(&self.sp) {
+            Reason::SetpointChange
+        } else {
+            Reason::NoStep
         }
     }
 

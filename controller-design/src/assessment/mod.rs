@@ -7,9 +7,11 @@
 //!
 //! | feature | is | near-optimal |
 //! |---|---|---|
-//! | `dip` | lowest value after the first peak, in first peaks | -0.18 to 0 |
+//! | `dip` | where it turns after the first peak, in first peaks | -0.18 to 0 |
 //! | `t_ratio` | time of the dip over time of the first peak, from the step | 1.85 to 2.30 |
-//! | `r3` | highest value after the dip, in first peaks | up to 0.30 |
+//! | `r3` | peak after the dip, in first peaks | up to 0.30 |
+//!
+//! Values count to the side of the first peak: of a process with negative gain everything is upside down.
 //!
 //! The procedure is that of Airikka 2021, section 7; the ranges are tighter than the paper's curves alone would give:
 //! they were found on loops off their optimum by up to 2.5 times in gain and 3 times in integral time, so that the IAE
@@ -101,7 +103,7 @@ pub struct Features {
     pub dip: Option<f64>,
     /// Time of the dip from the step, in `t1`.
     pub t_ratio: Option<f64>,
-    /// Third peak: highest value after the dip, as a share of `p1`.
+    /// Third peak after the dip, as a share of `p1`, to the side of the first.
     pub r3: Option<f64>,
     /// Standard deviation of the noise of a sample \[y\].
     pub sigma: f64,
@@ -131,12 +133,21 @@ pub struct Marks {
     pub inputs: (f64, f64),
     /// First peak.
     pub peak: Option<Place>,
-    /// Dip.
+    /// Dip; `None` also when it is less than two standard deviations of a sample deep, which no eye sees.
     pub dip: Option<Place>,
-    /// Third peak.
+    /// Third peak; `None` when the dip is.
     pub third: Option<Place>,
     /// The smoothed measurement over the span.
     pub smoothed: Vec<Place>,
+}
+
+impl Marks {
+    /// Whether the measurement falls when the output is raised: process and controller have negative gains then, the
+    /// first peak of a step upwards points downwards, and the dip upwards.
+    #[must_use]
+    pub fn is_reverse(&self) -> bool {
+        self.peak.is_some_and(|peak| (peak.y - self.baseline) * (self.inputs.1 - self.inputs.0) < 0.0)
+    }
 }
 
 /// What the experiment says about the loop.

@@ -24,6 +24,10 @@ pub enum Reason {
     DipTooLate(f64),
     /// Inconclusive: no step of the output by hand was found.
     NoStep,
+    /// Inconclusive: the output of the controller is the same all the time.
+    OutputConstant,
+    /// Inconclusive: the record is one of a change of the set-point.
+    SetpointChange,
     /// Inconclusive: so few samples before the step.
     ShortBefore(usize),
     /// Inconclusive: measurement or output were on the move before the step.
@@ -68,6 +72,8 @@ impl Reason {
             Self::DipTooShallow(_) => "dip-too-shallow",
             Self::DipTooLate(_) => "dip-too-late",
             Self::NoStep => "no-step",
+            Self::OutputConstant => "output-constant",
+            Self::SetpointChange => "setpoint-change",
             Self::ShortBefore(_) => "short-before",
             Self::NotSteady => "not-steady",
             Self::NotAtSetpoint(_) => "not-at-setpoint",
@@ -101,6 +107,12 @@ impl Reason {
             Self::NoStep => {
                 "step the output by hand by far more than it moves by itself, or say where the step is"
             }
+            Self::OutputConstant => {
+                "check the column of the output; else switch to manual, step the output and switch back while recording"
+            }
+            Self::SetpointChange => {
+                "leave the set-point alone: switch to manual, step the output and switch back while recording"
+            }
             Self::ShortBefore(_) => "record at least 10 samples of rest before the step",
             Self::NotSteady => "wait until the loop has settled before the step",
             Self::NotAtSetpoint(_) => {
@@ -133,10 +145,10 @@ impl fmt::Display for Reason {
         match self {
             Self::WithinRanges => f.write_str("the dip, its time and the third peak are in their ranges"),
             Self::DipTooDeep(dip) => {
-                write!(f, "the dip of {dip:.3} first peaks is too deep: the integral time is too short")
+                write!(f, "the dip of {dip:.3} first peaks goes too far beyond the baseline: the integral time is too short")
             }
             Self::Rings(r) => {
-                write!(f, "the third peak of {r:.3} first peaks is too high: the gain is too high")
+                write!(f, "the third peak of {r:.3} first peaks is too large: the gain is too high")
             }
             Self::DipTooEarly(r) => {
                 write!(f, "the dip comes early, at {r:.2} times the time of the first peak: the gain is too high")
@@ -153,6 +165,10 @@ impl fmt::Display for Reason {
                 write!(f, "the dip comes late, at {r:.2} times the time of the first peak: the gain is too low")
             }
             Self::NoStep => f.write_str("no step of the output by hand was found"),
+            Self::OutputConstant => f.write_str("the output of the controller is the same in the whole record"),
+            Self::SetpointChange => f.write_str(
+                "the record shows the answer to a change of the set-point, no step of the output by hand",
+            ),
             Self::ShortBefore(n) => write!(f, "the record has {n} samples before the step, too few for a baseline"),
             Self::NotSteady => f.write_str("the loop was not steady before the step"),
             Self::NotAtSetpoint(x) => {

@@ -11,6 +11,9 @@ use super::structures::Fits;
 /// and colour of the noise are estimates.
 pub(super) const NINETY: f64 = 1.8;
 
+/// A richer structure is determined by the record when its interval is at most so many times that of the simpler one.
+const DETERMINED: f64 = 3.0;
+
 /// Areas and `K_P` in the scale of the record.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Estimate {
@@ -19,24 +22,27 @@ pub(super) struct Estimate {
     pub(super) interval: Six,
     /// `K_P`, where the areas give one.
     pub(super) kp: Option<f64>,
+    /// Half width of its 90 % interval; infinite without a `K_P`.
     pub(super) kp_interval: f64,
-    /// Standard deviation of `K_P` over `K_P`, known errors added; infinite without a `K_P`.
-    pub(super) kp_spread: f64,
 }
 
 impl Estimate {
     /// From a covariance and errors of known size.
     fn new(areas: Six, covariance: &[Six; COUNT], known: &Six, tf: f64) -> Self {
         let interval = core::array::from_fn(|k| NINETY * root(covariance[k][k]) + known[k].abs());
-        let (mut kp_interval, mut kp_spread) = (f64::INFINITY, f64::INFINITY);
+        let mut kp_interval = f64::INFINITY;
         let kp = gains::kp(&areas, tf).ok();
-        if let (Some(kp), Some(slopes)) = (kp, gains::slopes(&areas, tf)) {
+        if let Some(slopes) = kp.and_then(|_| gains::slopes(&areas, tf)) {
             let deviation = root(gains::quadratic(&slopes, covariance));
             let bias = slopes.iter().zip(known).map(|(s, e)| s * e).sum::<f64>().abs();
             kp_interval = NINETY * deviation + bias;
-            kp_spread = (deviation + bias) / kp.abs();
         }
-        Self { areas, interval, kp, kp_interval, kp_spread }
+        Self { areas, interval, kp, kp_interval }
+    }
+
+    /// The interval of `K_P` as the standard deviation that it is of, over `K_P`; infinite without a `K_P`.
+    pub(super) fn kp_spread(&self) -> f64 {
+        self.kp.map_or(f64::INFINITY, |kp| self.kp_interval / (NINETY * kp.abs()))
     }
 }
 
@@ -157,8 +163,8 @@ pub(super) fn raw(record: &Record, fits: Option<&Fits>, settled: usize, tf: f64)
     }
 }
 
-/// The areas of the fit. Its intervals reach over those of the next richer structure: what the record cannot tell
-/// apart is not known.
+/// The areas of the fit. Its intervals reach over those of the next richer structure, as [`reach`] says: what the record
+/// cannot tell apart is not known.
 pub(super) fn fitted(record: &Record, fits: &Fits, tf: f64) -> Estimate {
     // What a converter's steps do to the first steady state changes the gain and with it all areas alike; the last one is
     // in the covariance of the fit.
@@ -176,11 +182,34 @@ pub(super) fn fitted(record: &Record, fits: &Fits, tf: f64) -> Estimate {
     if let Some(richer) = fits.richer.as_ref().map(of) {
         for k in 0..COUNT {
             let apart = (richer.areas[k] - estimate.areas[k]).abs();
-            estimate.interval[k] = estimate.interval[k].max(apart + richer.interval[k]);
+            estimate.interval[k] = reach(estimate.interval[k], apart, richer.interval[k]);
         }
         if let (Some(a), Some(b)) = (estimate.kp, richer.kp) {
-            estimate.kp_interval = estimate.kp_interval.max((a - b).abs() + richer.kp_interval);
+            estimate.kp_interval = reach(estimate.kp_interval, (a - b).abs(), richer.kp_interval);
         }
     }
     estimate
+}
+
+/// The half width `own` of the simplest structure that explains the record, with a richer one `apart` from it. One that
+/// the record determines is a possible truth and counts in full. One that it does not could be anywhere, and that says
+/// nothing about the process: it widens the interval by no more than the worst that a determined one might have.
+fn reach(own: f64, apart: f64, richer: f64) -> f64 {
+    let whole = apart + richer;
+    own.max(if richer <= DETERMINED * own { whole } else { whole.min(DETERMINED * own) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reach;
+
+    #[test]
+    fn only_a_determined_richer_structure_counts_in_full() {
+        assert_eq!(reach(1.0, 8.0, 2.0), 10.0);
+        assert_eq!(reach(1.0, 8.0, 1000.0), 3.0);
+        assert_eq!(reach(1.0, 0.5, 3.5), 3.0);
+        // A richer structure never makes anything more certain.
+        assert_eq!(reach(1.0, 0.1, 0.2), 1.0);
+        assert_eq!(reach(1.0, f64::INFINITY, f64::INFINITY), 3.0);
+    }
 }

@@ -1,24 +1,20 @@
 //! The result, and the way to it.
 
-use super::estimate::{self, Estimate};
-use super::fit::Fitted;
+use super::choice::{choose, remarks, unexplained};
+use super::estimate;
+use super::fit::{Fitted, lags};
 use super::gains;
 use super::moments::Six;
-use super::record::{Record, mean, tail_rows};
-use super::structures::{self, Fits};
+use super::record::Record;
+use super::settling::Settling;
+use super::structures;
 use super::{IdentifyOptions, Recording};
 use crate::areas::Areas;
 use crate::rules::reduction::Reduced;
 use crate::{Refusal, Warning, Warnings};
 
-/// Largest spread of `K_P` with which raw areas are used, and the one with which they are whatever the fit says.
-const MOST_SPREAD: f64 = 0.1;
-const GOOD_SPREAD: f64 = 0.002;
 /// Spread of `K_P` from which a person should look at the model before using gains.
 const WIDE_SPREAD: f64 = 0.3;
-/// Share of the change that may still be to come at the end, and the share from which that is said.
-const MOST_UNSETTLED: f64 = 0.05;
-const UNSETTLED: f64 = 0.01;
 
 /// Which areas were chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,6 +62,8 @@ pub struct Fit {
     pub b1: f64,
     /// Coefficients of `s, s^2, s^3, s^4`.
     pub a: [f64; 4],
+    /// Of the two factors `1 + f[0]*s + f[1]*s^2` and `1 + f[2]*s + f[3]*s^2` of the same denominator.
+    pub(super) factors: [f64; 4],
     /// In s.
     pub dead_time: f64,
     /// Root mean square of the residuals, in the unit of `y`.
@@ -74,7 +72,7 @@ pub struct Fit {
     pub areas: Areas,
     /// Half widths of the 90 % intervals of its areas.
     pub area_interval: [f64; 6],
-    /// Standard deviation over value of the `K_P` that follows from it.
+    /// Relative standard deviation of the `K_P` that follows from it, like [`Identified::kp_spread`].
     pub kp_spread: f64,
 }
 
@@ -89,7 +87,7 @@ pub struct Identified {
     pub raw_areas: Areas,
     /// Half widths of the 90 % intervals of the raw areas.
     pub raw_area_interval: [f64; 6],
-    /// Standard deviation over value of the `K_P` that follows from the raw areas; infinite when none does.
+    /// Relative standard deviation, like `kp_spread`, of the `K_P` that follows from the raw areas; infinite when none does.
     pub raw_kp_spread: f64,
     /// The second-order model fitted to the record.
     pub model: Option<SecondOrder>,
@@ -107,9 +105,10 @@ pub struct Identified {
     pub tf: f64,
     /// `K_P` of the magnitude optimum, eq. (6), from the chosen areas.
     pub kp: f64,
-    /// Half width of its 90 % interval.
+    /// Half width of its 90 % interval: noise, truncation of the integrals, and the distance to the next richer structure
+    /// where the record determines that one.
     pub kp_interval: f64,
-    /// Its standard deviation over its value.
+    /// The same as a relative standard deviation, `kp_interval/(1.8*|kp|)`.
     pub kp_spread: f64,
     /// Standard deviation of the white noise of `y`, in its unit.
     pub sigma: f64,
@@ -131,30 +130,6 @@ pub struct Identified {
     pub tail_from: f64,
     /// What a person should know.
     pub warnings: Warnings,
-}
-
-impl Identified {
-    /// The output of the fitted second-order model, baseline included, at the rows of the recording it is from.
-    #[must_use]
-    pub fn simulate(&self, recording: &Recording<'_>) -> Option<std::vec::Vec<f64>> {
-        let model = self.model?;
-        let offset = self.model_offset;
-        let span = recording.t.last()? - self.change_at;
-        let mut before = self.u0;
-        let mut moves = super::response::Moves::default();
-        for (t, u) in recording.t.iter().zip(recording.u) {
-            if *t >= self.change_at && *u != before {
-                moves.at.push((t - self.change_at) / span);
-                moves.by.push(u - before);
-                before = *u;
-            }
-        }
-        let lag = super::response::Lag { a1: model.a1 / span, a2: model.a2 / (span * span) };
-        let times: std::vec::Vec<f64> = recording.t.iter().map(|t| (t - self.change_at) / span).collect();
-        let mut chain = super::response::Chain::new(&[lag]);
-        let (x, _) = chain.response(&times, &moves, model.dead_time / span);
-        Some(x.into_iter().map(|x| offset + model.gain * x).collect())
-    }
 }
 
 pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> Result<Identified, Refusal> {
@@ -188,16 +163,16 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
         _ => &raw.estimate,
     };
     let kp = gains::kp(&best.areas, tf)?;
-    if !best.kp_spread.is_finite() {
+    if !best.kp_spread().is_finite() {
         return Err(Refusal::Data {
             why: "noise hides how the output moves: no controller gain can be told",
             help: "make a larger change of the input, record a longer steady state after it, or filter less noise in",
         });
     }
     remarks(&record, fits.as_ref(), &mut warnings);
-    if best.kp_spread > WIDE_SPREAD {
+    if best.kp_spread() > WIDE_SPREAD {
         let text = "gains that follow from the areas are uncertain: use a longer filter or a larger change of the input";
-        let _ = warnings.push(Warning::Value { about: "kp_spread", value: best.kp_spread, text });
+        let _ = warnings.push(Warning::Value { about: "kp_spread", value: best.kp_spread(), text });
     }
     let unfit = match Reduced::new(&Areas::new(best.areas)) {
         Ok(reduced) => reduced.fallback,
@@ -216,7 +191,7 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
         area_interval: scale.sizes(&best.interval),
         raw_areas: scale.areas(&raw.estimate.areas),
         raw_area_interval: scale.sizes(&raw.estimate.interval),
-        raw_kp_spread: raw.estimate.kp_spread,
+        raw_kp_spread: raw.estimate.kp_spread(),
         model: second.map(|fit| scale.second_order(fit)),
         model_offset: second.map_or(record.y0, |fit| y_of(fit.linear[0])),
         model_interval: second.map(|fit| scale.second_order_interval(fit)),
@@ -231,17 +206,18 @@ pub(super) fn identify(recording: &Recording<'_>, options: &IdentifyOptions) -> 
                 0.0
             },
             a: scale.denominator(fits.best.denominator()),
+            factors: scale.factors(&fits.best),
             dead_time: fits.best.times[0] * scale.time,
             rms: fits.best.rms * record.output.abs(),
             areas: scale.areas(&of.areas),
             area_interval: scale.sizes(&of.interval),
-            kp_spread: of.kp_spread,
+            kp_spread: of.kp_spread(),
         }),
         chosen,
         tf: tf * scale.time,
         kp: kp / scale.gain,
         kp_interval: best.kp_interval / scale.gain.abs(),
-        kp_spread: best.kp_spread,
+        kp_spread: best.kp_spread(),
         sigma: record.noise.sigma * record.output.abs(),
         quantisation: record.noise.quantisation * record.output.abs(),
         y0: record.y0,
@@ -303,6 +279,12 @@ impl Scale {
         a
     }
 
+    fn factors(&self, fit: &Fitted) -> [f64; 4] {
+        let [one, other] = lags(fit.shape, &fit.times);
+        let (first, second) = (self.time, self.time * self.time);
+        [one.a1 * first, one.a2 * second, other.a1 * first, other.a2 * second]
+    }
+
     fn second_order(&self, fit: &Fitted) -> SecondOrder {
         let [dead_time, a1, a2, ..] = fit.times;
         SecondOrder {
@@ -321,141 +303,5 @@ impl Scale {
             a1: half(3) * self.time,
             a2: half(4) * self.time * self.time,
         }
-    }
-}
-
-/// When the output has come to rest, and what is still to come at the end.
-struct Settling {
-    /// In the time of the record.
-    at: f64,
-    /// The row, among those after the change.
-    row: usize,
-    left: f64,
-}
-
-impl Settling {
-    fn new(record: &Record, fits: Option<&Fits>) -> Self {
-        let (t, u, y) = record.after();
-        let tail = tail_rows(t, 0.1);
-        let from = t.len() - tail;
-        // Two halves of the end: what an output that creeps on, or an input, still does.
-        let earlier = from.saturating_sub(tail);
-        let drift = |list: &[f64]| {
-            let (a, b) = (mean(&list[earlier..from]), mean(&list[from..]));
-            ((b - a).abs() - 4.0 * libm::sqrt(2.0 * record.noise.of_mean(tail)), b)
-        };
-        let ((y_drift, y_end), (u_drift, _)) = (drift(y), drift(u));
-        let mut left = y_drift.max(u_drift).max(0.0) / 1.5;
-        let simulated = fits.map(|fits| {
-            let best = &fits.best;
-            let mut instants = t.to_vec();
-            instants.push(1.0 + best.times[0] + 60.0 * best.slowest());
-            let mut all = best.simulate(record, &instants);
-            let rest = all.pop().unwrap_or(y_end);
-            left = left.max((rest - all[all.len() - 1]).abs() / (rest - best.linear[0]).abs());
-            (all, rest)
-        });
-        let (values, rest) = simulated.unwrap_or_else(|| (y.to_vec(), y_end));
-        let band = 0.02 * rest.abs().max(1e-300);
-        let row = values.iter().rposition(|y| (y - rest).abs() > band).map_or(0, |last| last + 1);
-        let row = row.min(t.len() - 1);
-        Self { at: t[row], row, left: if left.is_finite() { left } else { 1.0 } }
-    }
-
-    fn check(&self, warnings: &mut Warnings) -> Result<(), Refusal> {
-        if self.left > MOST_UNSETTLED {
-            return Err(Refusal::Data {
-                why: "the record ends before the output is at rest",
-                help: "record longer: until input and output have stayed where they end for a while",
-            });
-        }
-        if self.left > UNSETTLED {
-            let value = 100.0 * self.left;
-            let text = "per cent of the change are still to come at the end of the record";
-            let _ = warnings.push(Warning::Value { about: "settled", value, text });
-        }
-        Ok(())
-    }
-}
-
-/// Raw areas when they are certain beyond question, the fit when they are not certain enough, and between the two the
-/// one with the smaller interval; a fit that does not explain the record only when there is no other way.
-fn choose(raw: &Estimate, fitted: Option<&Estimate>, explained: bool, warnings: &mut Warnings) -> Chosen {
-    let mut say = |text| {
-        let about = "chosen";
-        let warning = match raw.kp_spread.is_finite() {
-            true => Warning::Value { about: "kp_spread of the raw areas", value: raw.kp_spread, text },
-            false => Warning::Text { about, text },
-        };
-        let _ = warnings.push(warning);
-    };
-    let good = raw.kp_spread <= MOST_SPREAD;
-    if raw.kp_spread <= GOOD_SPREAD || (good && !explained) {
-        return Chosen::Areas;
-    }
-    let Some(fitted) = fitted.filter(|fitted| fitted.kp.is_some()) else {
-        if !good {
-            say("no model fits the record either; the raw areas are used although they are uncertain");
-        }
-        return Chosen::Areas;
-    };
-    if good && raw.kp_interval <= fitted.kp_interval {
-        return Chosen::Areas;
-    }
-    if good {
-        say("the areas of the fitted model are less uncertain and are used");
-        return Chosen::Fit;
-    }
-    if raw.kp_spread.is_finite() {
-        say("more than 0.1, so the areas of the fitted model are used");
-    } else {
-        say("no controller follows from the raw areas, so the areas of the fitted model are used");
-    }
-    Chosen::Fit
-}
-
-/// More than 1 when the residuals of a fit are more than noise: larger than it, or going on for long.
-fn unexplained(record: &Record, fit: &Fitted) -> f64 {
-    let noise = record.noise.sigma.max(record.noise.quantisation / 3.4);
-    (fit.rms / (2.0 * noise).max(1e-6)).min(fit.colour)
-}
-
-fn remarks(record: &Record, fits: Option<&Fits>, warnings: &mut Warnings) {
-    let mut say = |warning| {
-        let _ = warnings.push(warning);
-    };
-    let Some(fits) = fits else {
-        say(Warning::Text { about: "model", text: "no second-order model could be fitted" });
-        return;
-    };
-    let noise = record.noise.sigma.max(record.noise.quantisation / 3.4).max(1e-9);
-    if unexplained(record, &fits.best) > 1.0 {
-        say(Warning::Value {
-            about: "misfit over noise",
-            value: fits.best.rms / noise,
-            text: "no model of a few lags explains the record; look for a disturbance, friction or a changing gain",
-        });
-    } else if fits.best.shape.order > 2 || fits.best.shape.zero {
-        say(Warning::Value {
-            about: "fit_rms over noise",
-            value: fits.second_order.rms / noise,
-            text: "the record asks for more than two lags with dead time; the areas are those of the richer fit",
-        });
-    }
-    if record.before < 3 {
-        say(Warning::Text {
-            about: "y0",
-            text: "fewer than three rows before the change: the baseline rests on them and on the fit",
-        });
-    }
-    let (t, ..) = record.after();
-    let areas = fits.best.areas();
-    let rows = t.partition_point(|t| *t < areas[1] / areas[0]);
-    if rows < 10 {
-        say(Warning::Value {
-            about: "rows in A1/A0",
-            value: rows as f64,
-            text: "sample faster for areas that are right to a per cent",
-        });
     }
 }

@@ -371,3 +371,79 @@ fn any_record_at_all() {
         }
     }
 }
+
+#[test]
+fn a_record_without_the_experiment_is_refused_for_what_it_shows() {
+    // Nothing at all, with and without noise of the measurement.
+    let mut still = good();
+    still.co.iter_mut().for_each(|co| *co = 3.0);
+    assert_eq!(unclear(&still), Reason::OutputConstant);
+    noisy(&mut still, 0.05);
+    assert_eq!(unclear(&still), Reason::OutputConstant);
+    // A PI loop that follows a step of its set-point: kp (1 + 1/(ti s)), the process 1/(1+s).
+    for (size, noise) in [(2.0, 0.0), (-0.3, 0.002), (0.5, 0.01)] {
+        let (mut y, mut i, ts) = (0.0, 0.0, 0.02);
+        let mut pcg = Pcg::new(11);
+        let mut record = Recording { t: vec![], sp: vec![], pv: vec![], co: vec![], iae: 0.0 };
+        for k in 0..2000 {
+            let sp = if k < 500 { 0.0 } else { size };
+            let pv = y + noise * pcg.gaussian();
+            i += 1.5 * ts / 0.9 * (sp - pv);
+            let co = i + 1.5 * (sp - pv);
+            record.t.push(ts * f64::from(k));
+            (record.sp.push(sp), record.pv.push(pv), record.co.push(co));
+            y += (co - y) * ts;
+        }
+        assert_eq!(unclear(&record), Reason::SetpointChange, "{size}, {noise}");
+    }
+    // Only noise.
+    let mut pcg = Pcg::new(12);
+    let mut noise = good();
+    for (pv, co) in noise.pv.iter_mut().zip(&mut noise.co) {
+        *pv = pcg.gaussian();
+        *co = -0.5 * *pv;
+    }
+    assert_eq!(unclear(&noise), Reason::NoStep);
+}
+
+/// Upside down everything is the same, but the marks are where the measurement is.
+#[test]
+fn a_negative_gain_turns_the_picture_not_the_verdict() {
+    let (plain, mut turned) = (good(), good());
+    turned.pv.iter_mut().for_each(|pv| *pv = -*pv);
+    let (plain, turned) = (result(&plain), result(&turned));
+    assert_eq!((plain.verdict, &plain.features), (turned.verdict, &turned.features));
+    let (a, b) = (plain.marks.expect("marks"), turned.marks.expect("marks"));
+    assert!(!a.is_reverse() && b.is_reverse());
+    assert_eq!(a.dip.map(|place| place.y), b.dip.map(|place| -place.y));
+}
+
+/// Marked from twice the deviation on that was added, and measured in either case.
+#[test]
+fn a_dip_that_no_eye_sees_is_not_marked() {
+    let (mut hidden, mut shown) = (0, 0);
+    for (kp, ti) in
+        [0.5, 0.6, 0.7, 0.8, 0.9, 1.0].iter().flat_map(|kp| [0.8, 0.9, 1.0, 1.2].map(|ti| (*kp, ti)))
+    {
+        let clean = optimum().detuned(kp, ti).sampled();
+        let p1 = result(&clean).features.expect("features").p1;
+        for share in [0.001, 0.01, 0.02, 0.03, 0.04] {
+            let mut recording = keep(&clean, |_| true);
+            noisy(&mut recording, share * p1);
+            let found = result(&recording);
+            let (Some(features), Some(marks)) = (found.features, found.marks) else { continue };
+            let Some((third, dip)) = features.r3.zip(features.dip) else { continue };
+            // The deviation is itself an estimate.
+            let depth = (third - dip) / share;
+            let marked = [marks.dip.is_some(), marks.third.is_some()];
+            if depth >= 2.3 {
+                shown += 1;
+                assert_eq!(marked, [true; 2], "{kp}, {ti}, {share}: {depth}");
+            } else if depth <= 1.7 {
+                hidden += 1;
+                assert_eq!(marked, [false; 2], "{kp}, {ti}, {share}: {depth}");
+            }
+        }
+    }
+    assert!(hidden >= 2 && shown >= 8, "{hidden} {shown}");
+}
