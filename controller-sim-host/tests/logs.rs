@@ -38,10 +38,58 @@ fn the_same_table_in_many_hands() {
         "n,Time [ms],PV,OP\n1,0,20.9,0\n2,1000,20.9,50\n3,2500,21.25,50\n",
         "timestamp,op,pv\n2024-02-28T23:59:59Z,0,20.9\n2024-02-29T00:00:00Z,50,20.9\n2024-02-29T01:00:01.5+01:00,50,21.25\n",
         "clock;t1;q1;date time\n7;20,9;0;23:59:59\n7;20,9;50;0:00:00\n7;21,25;50;00:00:01,5\n",
+        "Zeit;Ventil;Istwert\n31.12.2023 23:59:59,000;0;20,9\n01.01.2024 00:00:00,000;50;20,9\n1.1.2024 0:00:01,5;50;21,25\n",
+        "Datum;Uhrzeit;Ventil;Istwert\n29.02.2024;23:59:59;0;20,9\n01.03.2024;00:00:00;50;20,9\n01.03.2024;00:00:01,5;50;21,25\n",
+        "29.02.2024;23:59:59;0;20,9\n01.03.2024;00:00:00;50;20,9\n01.03.2024;00:00:01,5;50;21,25\n",
+        "Time,Date,u,y\n23:59:59,2024-02-29,0,20.9\n00:00:00,2024-03-01,50,20.9\n00:00:01.5,2024-03-01,50,21.25\n",
+        "Datum;Istwert;Ventil\n29.02.2024 23:59:59;20,9;0\n01.03.2024 00:00:00;20,9;50\n01.03.2024 00:00:01,5;21,25;50\n",
         "time,u,y\n\"0,0\",\"0\",\"20,9\"\n\"1,0\",50,\"20,9\"\n\"2,5\",50,\"21,25\"\n",
     ] {
         let log = good(text);
         assert_eq!(columns(&log), ROWS, "{text}");
+    }
+}
+
+/// Both columns are asked for by the name of either one; whole days count.
+#[test]
+fn a_date_beside_the_time_of_day_counts() {
+    let text = "Nr;Datum;Uhrzeit;Ventil;Istwert\n1;28.02.2024;12:00:00;0;1\n2;01.03.2024;12:00:01;0;2\n";
+    for name in ["Datum", "Uhrzeit", "2", "3"] {
+        let roles = [
+            Role::time(Column::from_text(name)),
+            Role::input(Column::from_text("Ventil")),
+            Role::output(Column::from_text("Istwert")),
+        ];
+        let log = read("log.csv", text, &roles).expect("a table");
+        assert_eq!(log.times, [0.0, 2.0 * 86_400.0 + 1.0], "{name}");
+    }
+}
+
+#[test]
+fn dates_that_can_be_read_in_two_ways_are_refused_with_what_to_write() {
+    for date in ["01/03/2024 12:00:00", "1-3-2024 12:00:00", "01.03.24 12:00:00"] {
+        let text = format!("time;u;y\n{date};0;1\n{date};1;1\n{date};1;2\n");
+        let (fault, place) = bad(&text);
+        let help = fault.help.expect("help");
+        assert!(help.contains("day or month first") && help.contains("01.03.2024"), "{help}");
+        assert_eq!((place.line, place.column), (2, 1));
+    }
+}
+
+/// Milliseconds of date-times are the numbers that a person would write, not what floating-point seconds since 1970 leave.
+#[test]
+fn milliseconds_of_dates_are_exact() {
+    let rows: String = (0..1000)
+        .map(|i| format!("2024-03-01T12:30:{:02}.{:03}Z,0,{i}\n", i / 100, i % 100 * 10 + 3))
+        .collect();
+    let log = good(&format!("time,u,y\n{rows}"));
+    for (i, t) in log.times.iter().enumerate() {
+        // Both are the nearest to the decimal number.
+        assert_eq!(
+            t.to_bits(),
+            format!("{}.{:02}", i / 100, i % 100).parse::<f64>().expect("a number").to_bits(),
+            "{i}: {t}"
+        );
     }
 }
 

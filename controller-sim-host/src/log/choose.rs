@@ -60,7 +60,9 @@ impl Role {
             "sec",
             "elapsed",
             "zeit",
+            "uhrzeit",
             "zeitstempel",
+            "datum",
         ];
         Self { name: "time", option: "--time", column, usual, required: true }
     }
@@ -131,12 +133,14 @@ pub(super) fn words(name: &str) -> Vec<String> {
     split.map(str::to_lowercase).collect()
 }
 
-/// The column of each role; `None` for one that is not there and need not be. `names` are empty without a line of names.
+/// The column of each role; `None` for one that is not there and need not be. `names` are empty without a line of names;
+/// `date` belongs to the times in another column and is not offered.
 pub(super) fn choose(
     file: &str,
     names: &[String],
     width: usize,
     roles: &[Role],
+    date: Option<usize>,
 ) -> Result<Vec<Option<usize>>, Fault> {
     let mut chosen: Vec<Option<usize>> = vec![None; roles.len()];
     for (place, role) in chosen.iter_mut().zip(roles) {
@@ -167,13 +171,13 @@ pub(super) fn choose(
             };
             let taken = chosen.clone();
             let mut free = role.usual.iter().flat_map(|word| {
-                let columns = (0..parts.len()).filter(|c| !taken.contains(&Some(*c)));
+                let columns = (0..parts.len()).filter(|c| !taken.contains(&Some(*c)) && date != Some(*c));
                 columns.filter(|c| fits(c, word)).collect::<Vec<_>>()
             });
             chosen[i] = free.next();
         }
     }
-    let left: Vec<usize> = (0..width).filter(|c| !chosen.contains(&Some(*c))).collect();
+    let left: Vec<usize> = (0..width).filter(|c| !chosen.contains(&Some(*c)) && date != Some(*c)).collect();
     let missing: Vec<usize> =
         (0..roles.len()).filter(|&i| chosen[i].is_none() && roles[i].required).collect();
     let named = missing.len() < roles.iter().filter(|role| role.required).count();
@@ -188,7 +192,8 @@ pub(super) fn choose(
             true => format!("`{file}` has no column left for the {}", role.name),
             false => format!("`{file}`: which column is the {}?", role.name),
         };
-        let help = format!("say it by `{}`; {}", role.option, listing(names, width));
+        let rows = if role.option == "--time" { ", or `--log-ts S` where the log has no times" } else { "" };
+        let help = format!("say it by `{}`{rows}; {}", role.option, listing(names, width));
         return Err(Fault::new(code::UNKNOWN_NAME, 0..0, message).help(help));
     }
     Ok(chosen)

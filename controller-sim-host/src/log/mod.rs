@@ -3,8 +3,9 @@
 //! * Cells are separated by `;`, tabs or `,`, or by spaces where there is nothing else; they may be in quotes. With
 //!   `;`, tabs, spaces or in quotes a comma may be the decimal sign.
 //! * Above the table there may be comments (`#`, `%`, `//`), other text, a line with names and one with units.
-//! * Times are numbers (seconds, unless the name or the unit says ms, min or h), clock times `12:30:05,5`, or ISO date-times
-//!   `2024-03-01T12:30:05.5+01:00`. They may be at any distances and may stand still, never go back.
+//! * Times are numbers (seconds, unless the name or the unit says ms, min or h), clock times `12:30:05,5`, ISO date-times
+//!   `2024-03-01T12:30:05.5+01:00`, or date-times with dots, `01.03.2024 12:30:05,5`, the day first; date and clock time may
+//!   be in two columns next to each other. They may be at any distances and may stand still, never go back.
 //! * Rows in which a cell that is needed is empty or no number are left out, and that is said; more than one in five is a
 //!   fault.
 //!

@@ -2,7 +2,7 @@
 
 use super::cells::{Cell, Line, Separator, cells, is_comment, lines, number, separator};
 use super::choose::{Role, choose, words};
-use super::time::{self, Kind};
+use super::time::{self, Clock, Stamp};
 use crate::scenario::{Fault, code, show_short};
 use std::ops::Range;
 
@@ -12,7 +12,6 @@ const MOST_ROWS: usize = 10_000_000;
 const MOST_REMARKS: usize = 3;
 /// A step this much longer than the usual one is a gap.
 const GAP: f64 = 5.0;
-const DAY: f64 = 86_400.0;
 
 /// A log that was read.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -50,8 +49,15 @@ pub struct Log {
 pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
     let table = Table::find(file, text)?;
     let width = table.rows.iter().take(200).map(|row| row.cells.len()).max().unwrap_or(0);
-    let chosen = choose(file, &table.names, width, roles)
+    let pair = table.date_and_clock();
+    let mut chosen = choose(file, &table.names, width, roles, pair.map(|(date, _)| date))
         .map_err(|fault| Fault { span: table.place_of_names(), ..fault })?;
+    // Who names the column of the dates means both.
+    if let (Some(time), Some((date, clock))) = (chosen.first_mut(), pair)
+        && *time == Some(date)
+    {
+        *time = Some(clock);
+    }
     let title = |column: &Option<usize>, list: &[String]| -> String {
         column.and_then(|c| list.get(c)).cloned().unwrap_or_default()
     };
@@ -62,13 +68,16 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
         ..Log::default()
     };
     let time_column = chosen.first().copied().flatten();
-    let mut clock = Clock::new(&log);
+    let date_column = pair.filter(|(_, clock)| time_column == Some(*clock)).map(|(date, _)| date);
+    let title = log.titles.first().map_or(Vec::new(), |title| words(title));
+    let below = log.units.first().map_or(Vec::new(), |unit| words(unit));
+    let mut clock = Clock::new(&below, title.get(1..).unwrap_or(&[]));
     let mut skipped: Vec<Fault> = Vec::new();
     for row in &table.rows {
         let mut values = Vec::with_capacity(chosen.len());
         let time = match time_column {
-            Some(column) => table.time(row, column),
-            None => Ok((log.times.len() as f64, Kind::Number)),
+            Some(column) => table.time(row, column, date_column),
+            None => Ok(Stamp::Number(log.times.len() as f64)),
         };
         let found = time.and_then(|t| {
             for column in chosen.iter().skip(1).flatten() {
@@ -76,7 +85,7 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
             }
             Ok(t)
         });
-        let (t, kind) = match found {
+        let stamp = match found {
             Ok(found) => found,
             Err(fault) => {
                 skipped.push(fault);
@@ -84,14 +93,15 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
             }
         };
         let time_column = time_column.unwrap_or(0);
-        let t = clock.seconds(t, kind).map_err(|why| table.fault(row, time_column, why))?;
+        let t = clock.seconds(stamp).map_err(|why| table.fault(row, time_column, why))?;
         if let Some(last) = log.times.last().filter(|last| t < **last) {
             let message =
                 format!("the time {} is before {}, that of the row above", show_short(t), show_short(*last));
             let fault = table.fault(row, time_column, message);
-            return Err(
-                fault.help("times must not go back: sort the rows, or name another column by `--time`")
-            );
+            return Err(fault.help(
+                "times must not go back: sort the rows, or name another column by `--time`; \
+                 `--log-ts S` reads a log without times",
+            ));
         }
         log.times.push(t);
         log.lines.push(row.number);
@@ -102,7 +112,9 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
     if log.times.is_empty() || 5 * skipped.len() > table.rows.len() {
         return Err(skipped.into_iter().next().unwrap_or_else(|| table.empty()));
     }
-    log.remarks = clock.remarks(&table);
+    log.remarks.extend(clock.unit().map(|unit| {
+        Fault::new(code::RECORDING, table.place_of_names(), format!("the times are taken to be {unit}"))
+    }));
     tell(&mut log.remarks, skipped, "the row is left out: ", "more rows are left out");
     log.remarks.extend(doubled(&log, &table));
     let gaps = gaps(&log, &table);
@@ -163,58 +175,6 @@ fn doubled(log: &Log, table: &Table<'_>) -> Option<Fault> {
     let fault = Fault::new(code::RECORDING, table.line(first), message);
     let many = 4 * count > log.times.len();
     Some(if many { fault.help("record times with more digits: rows are lost") } else { fault })
-}
-
-/// Makes seconds of what stands in the column of the times.
-struct Clock {
-    scale: f64,
-    unit: Option<&'static str>,
-    kind: Option<Kind>,
-    first: f64,
-    last: f64,
-    days: f64,
-}
-
-impl Clock {
-    fn new(log: &Log) -> Self {
-        let title = log.titles.first().map_or(Vec::new(), |title| words(title));
-        let own = log.units.first().map_or(Vec::new(), |unit| words(unit));
-        let unit = time::unit(&own).or_else(|| time::unit(title.get(1..).unwrap_or(&[])));
-        Self {
-            scale: unit.map_or(1.0, |unit| unit.0),
-            unit: unit.map(|unit| unit.1),
-            kind: None,
-            first: 0.0,
-            last: f64::NEG_INFINITY,
-            days: 0.0,
-        }
-    }
-
-    fn seconds(&mut self, t: f64, kind: Kind) -> Result<f64, String> {
-        let begins = self.kind.is_none();
-        if *self.kind.get_or_insert(kind) != kind {
-            return Err("the time is written in another way than in the first row".to_owned());
-        }
-        match kind {
-            Kind::Number => return Ok(self.scale * t),
-            // After midnight.
-            Kind::Clock if t + self.days < self.last - 0.5 * DAY => self.days += DAY,
-            Kind::Clock | Kind::Date => {}
-        }
-        let t = t + self.days;
-        self.first = if begins { t } else { self.first };
-        self.last = t;
-        Ok(t - self.first)
-    }
-
-    fn remarks(&self, table: &Table<'_>) -> Vec<Fault> {
-        let of_unit = self.unit.filter(|_| self.kind == Some(Kind::Number));
-        let remark = of_unit.map(|unit| {
-            let message = format!("the times are taken to be {unit}");
-            Fault::new(code::RECORDING, table.place_of_names(), message)
-        });
-        remark.into_iter().collect()
-    }
 }
 
 /// The table in a text: where its rows are, and what stands above them.
@@ -344,12 +304,33 @@ impl<'t> Table<'t> {
         }
     }
 
-    fn time(&self, row: &Line, column: usize) -> Result<(f64, Kind), Fault> {
+    /// The two columns next to each other in which dates and clock times are.
+    fn date_and_clock(&self) -> Option<(usize, usize)> {
+        let is = |row: &Line, column: usize, kind: fn(&str) -> bool| {
+            row.cells.get(column).is_some_and(|cell| kind(&self.text[cell.span.clone()]))
+        };
+        let of_row = |row: &Line| {
+            (1..row.cells.len())
+                .flat_map(|at| [(at - 1, at), (at, at - 1)])
+                .find(|(date, clock)| is(row, *date, time::is_date) && is(row, *clock, time::is_clock))
+        };
+        self.rows.iter().take(5).find_map(of_row)
+    }
+
+    fn time(&self, row: &Line, column: usize, date: Option<usize>) -> Result<Stamp, Fault> {
         let (cell, text) = self.cell(row, column)?;
-        let parsed = time::parse(text, self.comma_is_decimal || cell.quoted);
-        parsed.filter(|(t, _)| t.abs() <= 1e15).ok_or_else(|| {
-            self.fault(row, column, "this is no time")
-                .help("times are seconds, `12:30:05.5` or `2024-03-01T12:30:05.5Z`")
+        let (wrong, parsed) = match date {
+            Some(date) => (date, time::joined(self.cell(row, date)?.1, text)),
+            None => (column, time::parse(text, self.comma_is_decimal || cell.quoted)),
+        };
+        parsed.filter(|stamp| !matches!(stamp, Stamp::Number(t) if t.abs() > 1e15)).ok_or_else(|| {
+            let help = match time::is_unclear(text) {
+                true => "day or month first? write dates as `2024-03-01` or, the day first, `01.03.2024`",
+                false => {
+                    "times are seconds, `12:30:05.5`, `2024-03-01T12:30:05.5Z` or `01.03.2024 12:30:05,5`"
+                }
+            };
+            self.fault(row, wrong, "this is no time").help(help)
         })
     }
 
