@@ -5,7 +5,7 @@ use super::experiment::{Picture, Signals, downwards, draw};
 use super::legend::{area, line};
 use super::page::{document, notes, scroll};
 use crate::output::table::format_number;
-use controller_design::assessment::{Acceptance, Assessment, Change, Features, Verdict};
+use controller_design::assessment::{Acceptance, Assessment, Change, Features, Marks, Verdict};
 use maud::{Markup, html};
 
 /// An experiment with what came of it.
@@ -62,7 +62,7 @@ pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
     vec![
         line(
             "dip",
-            "farthest return after the first peak, in first peaks",
+            "turning point after the first peak, in first peaks; below 0 beyond the baseline",
             features.dip,
             format!("{:.2} to {:.2}", dip.0, dip.1),
             within(features.dip, dip),
@@ -76,7 +76,7 @@ pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
         ),
         line(
             "r3",
-            "largest deviation after the dip, in first peaks",
+            "peak after the dip, to the side of the first, in first peaks",
             features.r3,
             format!("at most {r3:.2}"),
             within(features.r3, (f64::NEG_INFINITY, r3)),
@@ -90,9 +90,12 @@ pub fn lines(features: &Features, acceptance: &Acceptance) -> Vec<Line> {
 /// What to change in the controller, in words; nothing when there is nothing to change.
 #[must_use]
 pub fn advice(assessment: &Assessment) -> Option<String> {
-    let gain = assessment.advice.kp.map(|change| match change {
-        Change::Raise => "raise the gain",
-        Change::Lower => "lower the gain",
+    let is_reverse = assessment.marks.as_ref().is_some_and(Marks::is_reverse);
+    let gain = assessment.advice.kp.map(|change| match (change, is_reverse) {
+        (Change::Raise, false) => "raise the gain",
+        (Change::Lower, false) => "lower the gain",
+        (Change::Raise, true) => "make the negative gain larger in size",
+        (Change::Lower, true) => "make the negative gain smaller in size",
     });
     let time = assessment.advice.ti.map(|change| match change {
         Change::Raise => "make the integral time longer",
@@ -184,8 +187,14 @@ fn described(experiment: &Experiment<'_>) -> String {
     let Some(features) = experiment.assessment.features else {
         return "Measurement and output over time. No response was measured.".to_owned();
     };
+    let marks = experiment.assessment.marks.as_ref();
+    let side = match marks.and_then(|marks| marks.peak.map(|peak| peak.y < marks.baseline)) {
+        Some(true) => " below the mean before the step,",
+        Some(false) => " above the mean before the step,",
+        None => "",
+    };
     let mut text = format!(
-        "Measurement and output over time. First peak {} after {} s.",
+        "Measurement and output over time. First peak {}{side} after {} s.",
         format_number(features.p1),
         format_number(features.t1)
     );

@@ -122,6 +122,35 @@ fn a_record_that_does_not_tell_ends_with_3_and_the_reason() {
     // No experiment at all.
     folder.write("flat.csv", "t,r,y,u\n0,1,1,2\n1,1,1,2\n2,1,1,2\n");
     assert_eq!(assess(&folder, &["flat.csv"]).1["reasons"][0]["code"], "no-step");
+    let rows: String = (0..30).map(|row| format!("1,{},2\n", 1.0 + 0.01 * f64::from(row % 3))).collect();
+    folder.write("flat.csv", &format!("r,y,u\n{rows}"));
+    let output = folder.run(&["assess", "flat.csv", "--log-ts", "0.5"]);
+    assert_eq!(output.status.code(), Some(3));
+    let shown = text(&output.stderr);
+    assert!(shown.contains("the output of the controller is the same in the whole record"), "{shown}");
+    assert!(shown.contains("step the output"), "{shown}");
+}
+
+/// A process with negative gain: the same verdict, and the gain is to be changed in size.
+#[test]
+fn the_words_of_a_reverse_loop() {
+    let folder = experiment("assess-reverse");
+    let rows: String = rows(&folder, "gain too low")
+        .iter()
+        .map(|[t, r, y, u]| {
+            let y: f64 = y.parse().expect("a number");
+            let r: f64 = r.parse().expect("a number");
+            format!("{t},{},{},{u}\n", 100.0 - r, 100.0 - y)
+        })
+        .collect();
+    folder.write("reverse.csv", &format!("t,r,y,u\n{rows}"));
+    let shown =
+        folder.done(&["assess", "reverse.csv", "--step-at", "60", "--auto-at", "70", "--report", "r.html"]);
+    assert!(shown.contains("sluggish") && shown.contains("make the negative gain larger in size"), "{shown}");
+    let page = folder.read("r.html");
+    assert!(
+        page.contains("below the mean before the step") != page.contains("above the mean before the step")
+    );
 }
 
 #[test]
