@@ -40,8 +40,21 @@ pub struct Tuned {
     pub made: Design,
     /// The file that is run, analysed, exported and flashed: around the operating point of the record.
     pub file: DesignFile,
+    /// Whether the loop works on the fit that explains the record best; else on the model of second order.
+    pub on_fit: bool,
     /// What a person should know of the two together.
     pub warnings: Vec<String>,
+}
+
+impl Tuned {
+    /// Largest distance of the response of the model in the loop from the record \[y\].
+    #[must_use]
+    pub fn worst_residual(&self, recording: &Recording<'_>) -> f64 {
+        let found = &self.found;
+        let simulated = if self.on_fit { found.simulate_fit(recording) } else { found.simulate(recording) };
+        let simulated = simulated.unwrap_or_default();
+        simulated.iter().zip(recording.y).map(|(model, y)| (model - y).abs()).fold(0.0, f64::max)
+    }
 }
 
 /// Identifies the process of `recording` and designs a controller by `request`.
@@ -72,7 +85,8 @@ pub fn tune(recording: &Recording<'_>, request: &Request, known: &Known) -> Resu
     };
     let warnings = warnings(recording, &found, &made, known);
     let file = file(&found, &made, known);
-    Ok(Tuned { found, made, file, warnings })
+    let on_fit = rich(&found, request.ts).is_some();
+    Ok(Tuned { found, made, file, on_fit, warnings })
 }
 
 fn designed(found: &Identified, request: &Request) -> Result<Design, Refusal> {
@@ -91,21 +105,20 @@ pub fn plant_of(found: &Identified, ts: f64) -> Result<TransferFunction, Refusal
 
 /// The model in whose place the controller works: the fit that was chosen, else the model of second order.
 fn plant(found: &Identified, ts: f64) -> Result<TransferFunction, Refusal> {
-    const NONE: Refusal = Refusal::Data {
+    rich(found, ts).or_else(|| second_order(found, ts)).ok_or(Refusal::Data {
         why: "no model describes the record",
         help: "record a larger step, and until the output is at rest",
-    };
-    let model = match (found.chosen, found.fit, found.model) {
-        (Chosen::Fit, Some(Fit { gain, b1, a: [a1, a2, a3, a4], dead_time, .. }), _) => {
-            let num = Polynomial::new([gain, gain * b1]);
-            TransferFunction::from_polynomials(&num, &Polynomial::new([1.0, a1, a2, a3, a4]), dead_time)
-        }
-        _ => return second_order(found, ts).ok_or(NONE),
-    };
-    let model = model.map_err(|_| NONE)?;
-    // A lag that is much faster than the sampling was not seen by it either.
-    let is_slow = model.poles().iter().all(|pole| pole.abs() * FAST_LAG * ts < 1.0);
-    if is_slow { Ok(model) } else { second_order(found, ts).ok_or(NONE) }
+    })
+}
+
+/// The fit, where its areas were chosen and it has no lag so much faster than the sampling that it was not seen by it.
+fn rich(found: &Identified, ts: f64) -> Option<TransferFunction> {
+    let Fit { gain, b1, a: [a1, a2, a3, a4], dead_time, .. } =
+        found.fit.filter(|_| found.chosen == Chosen::Fit)?;
+    let num = Polynomial::new([gain, gain * b1]);
+    let den = Polynomial::new([1.0, a1, a2, a3, a4]);
+    let model = TransferFunction::from_polynomials(&num, &den, dead_time).ok()?;
+    model.poles().iter().all(|pole| pole.abs() * FAST_LAG * ts < 1.0).then_some(model)
 }
 
 /// The model of second order.
@@ -179,7 +192,10 @@ fn warnings(recording: &Recording<'_>, found: &Identified, made: &Design, known:
         ));
     }
     if known.limits.is_none() {
-        list.push("the range of the output is not known: `--limits LO:HI` puts it into the file".to_owned());
+        list.push(
+            "no limits given: the simulated output is not limited; `--limits LO:HI` limits it, also in the design file"
+                .to_owned(),
+        );
     }
     list
 }

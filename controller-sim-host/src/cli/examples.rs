@@ -70,7 +70,7 @@ Examples:
   controller-sim identify step.csv                            the columns by their names, or in this order
   controller-sim identify log.csv --time t --input MV --output PV
   controller-sim identify log.csv --input 4 --output 2 --report log.html
-  controller-sim identify samples.csv --ts 0.1                rows 0.1 s apart, without a column of times
+  controller-sim identify samples.csv --log-ts 0.1            rows 0.1 s apart, without a column of times
   logger | controller-sim identify - --json
 
 The log shows a change of the input (a step, a ramp, a closed loop that moves) from one steady state to another.";
@@ -79,6 +79,8 @@ pub(super) const TUNE: &str = "\
 Examples:
   controller-sim tune step.csv --report loop.html --save loop.toml --limits 0:100
   controller-sim tune step.csv --input heater --output temperature --method momi --kpidn 3
+  controller-sim tune samples.csv --log-ts 0.1 --ts 0.5
+                                                     rows 0.1 s apart, for a controller that runs every 0.5 s
   controller-sim run loop.toml --precision f32       the loop as the target computes it
 
 The noise gain is 4/|K| or what is attainable; Ms is kept at 2 or below by the filter of the estimator.

@@ -3,6 +3,7 @@
 use super::quoting::quoted;
 use super::run::OPEN;
 use super::step_log::{StepLog, recording, refused};
+use super::wish::positive;
 use super::{Failure, colours, examples, print};
 use crate::output::{
     FileTarget, Identification, Problem, Severity, Source, Written, identify_json, identify_table, render,
@@ -18,8 +19,8 @@ use std::path::PathBuf;
 pub(super) struct IdentifyArguments {
     #[command(flatten)]
     record: StepLog,
-    /// The rows are this far apart in seconds; the log needs no times then
-    #[arg(long, value_name = "S", value_parser = sampling_time, conflicts_with = "time")]
+    /// The same as `--log-ts`
+    #[arg(long, value_name = "S", value_parser = positive, conflicts_with_all = ["time", "log_ts"])]
     ts: Option<f64>,
     /// Write a page with the record, the model and the areas to this file, for the browser
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -27,13 +28,6 @@ pub(super) struct IdentifyArguments {
     /// Replace files that exist
     #[arg(long, requires = "report")]
     force: bool,
-}
-
-pub(super) fn sampling_time(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(ts) if ts.is_finite() && ts > 0.0 => Ok(ts),
-        _ => Err("write a time in seconds, above 0, for example `0.1`".to_owned()),
-    }
 }
 
 /// `command` is what was typed.

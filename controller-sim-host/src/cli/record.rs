@@ -1,6 +1,7 @@
 //! The record of a loop: time, set-point, measurement and output from a CSV file.
 
 use super::Failure;
+use super::wish::positive;
 use crate::log::{Column, Role, read};
 use crate::output::{Problem, Trouble};
 use crate::scenario::{Fault, SourceText, closest};
@@ -28,6 +29,9 @@ pub(super) struct Columns {
     /// Column of the controller's output, the input of the process
     #[arg(long, value_name = "COL")]
     pub(super) input: Option<String>,
+    /// The rows are this far apart \[s\]: for a log without times
+    #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "time")]
+    pub(super) log_ts: Option<f64>,
     /// The controller, when a file of `run --csv` has several
     #[arg(long, value_name = "NAME")]
     pub(super) controller: Option<String>,
@@ -60,8 +64,13 @@ impl Recorded {
             None => (None, Vec::new(), text),
         };
         let column = |text: &Option<String>| text.as_deref().map_or(Column::Usual, Column::from_text);
+        let log_ts = columns.log_ts;
+        let time = match log_ts {
+            Some(_) => Role { required: false, usual: &[], ..Role::time(Column::Usual) },
+            None => Role::time(column(&columns.time)),
+        };
         let roles = [
-            Role::time(column(&columns.time)),
+            time,
             Role::input(column(&columns.input)),
             Role::output(column(&columns.output)),
             Role::setpoint(column(&columns.setpoint)),
@@ -76,7 +85,11 @@ impl Recorded {
         let (input, output, setpoint) = (next(), next(), next());
         let title = |k: usize| log.titles.get(k).cloned().unwrap_or_default();
         let names = (title(2), title(1));
-        let (t, remarks) = (log.times, log.remarks);
+        let t = match log_ts {
+            Some(ts) => (0..log.times.len()).map(|row| row as f64 * ts).collect(),
+            None => log.times,
+        };
+        let remarks = log.remarks;
         Ok(Self { source, t, setpoint, output, input, names, remarks, controller, modes })
     }
 

@@ -1,5 +1,6 @@
 //! The log of a change between two steady states: what `identify` and `tune` read.
 
+use super::wish::positive;
 use super::{EXIT_REFUSED, Failure, input};
 use crate::log::{self, Column, Log, Role};
 use crate::output::{FileTarget, Problem, Trouble, is_same_file};
@@ -24,13 +25,17 @@ pub(super) struct StepLog {
     /// Column of the process output: what is measured
     #[arg(long, value_name = "COL")]
     output: Option<String>,
+    /// The rows are this far apart \[s\]: for a log without times
+    #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "time")]
+    log_ts: Option<f64>,
 }
 
 impl StepLog {
-    /// The file's text and what it says; with `rows` they are so far apart \[s\] and have no times.
+    /// The file's text and what it says; with `--log-ts` or `rows` they are so far apart \[s\] and have no times.
     pub(super) fn read(&self, rows: Option<f64>) -> Result<(SourceText, Log), Failure> {
         let (name, text) = input::read_log(&self.log)?;
         let source = SourceText { name, text };
+        let rows = self.log_ts.or(rows);
         let column = |text: &Option<String>| text.as_deref().map_or(Column::Usual, Column::from_text);
         let time = match rows {
             Some(_) => Role { required: false, usual: &[], ..Role::time(Column::Usual) },

@@ -36,7 +36,7 @@ pub(super) struct TuneArguments {
     /// The tuning rule
     #[arg(long, value_parser = Rule::parser(), default_value = "de-momi")]
     method: Rule,
-    /// Sampling period of the controller \[s\]; if not given, the usual distance of the log's rows
+    /// Sampling period of the controller \[s\]; if not given, the usual distance of the log's rows (`--log-ts`)
     #[arg(long, value_name = "S", value_parser = positive)]
     ts: Option<f64>,
     #[command(flatten)]
@@ -97,7 +97,9 @@ pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Resul
         made: &tuned.made,
         warnings: &tuned.warnings,
         events: simulated.events,
-        worst_residual: worst_residual(&finding),
+        worst_residual: tuned.worst_residual(&recording),
+        order: tuned.found.fit.filter(|_| tuned.on_fit).map_or(2, |fit| fit.order),
+        range: simulated.range,
     };
     let mut files = Vec::new();
     if let Some(target) = &save {
@@ -166,6 +168,7 @@ struct Simulated {
     scenario: crate::scenario::Scenario,
     result: crate::simulate::RunResult,
     events: [Metrics; 2],
+    range: (f64, f64),
 }
 
 impl Simulated {
@@ -183,7 +186,9 @@ impl Simulated {
             Some([setpoint, load]) => [setpoint.metrics, load.metrics],
             _ => return Err(failed("it has no two events".to_owned())),
         };
-        Ok(Self { name: name.to_owned(), text, scenario, result, events })
+        let range = result.controllers.first().and_then(|controller| controller.record.as_ref());
+        let range = range.and_then(|record| record.u.range()).unwrap_or((f64::NAN, f64::NAN));
+        Ok(Self { name: name.to_owned(), text, scenario, result, events, range })
     }
 
     fn page(&self, tuning: &Tuning<'_>, command: &str) -> String {
@@ -224,10 +229,4 @@ fn usual_distance(times: &[f64]) -> f64 {
     let median = distances.get(distances.len() / 2).copied().unwrap_or(1.0);
     // Stamps are rounded; nobody means 0.9999999 s.
     format!("{median:.3e}").parse().unwrap_or(median)
-}
-
-fn worst_residual(finding: &Identification<'_>) -> f64 {
-    let simulated = finding.found.simulate(&finding.recording).unwrap_or_default();
-    let residuals = simulated.iter().zip(finding.recording.y).map(|(model, y)| (model - y).abs());
-    residuals.fold(0.0, f64::max)
 }

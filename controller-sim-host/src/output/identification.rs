@@ -112,10 +112,11 @@ pub fn identify_table(finding: &Identification<'_>) -> String {
     }
     text.push_str(&format!("chosen: {}\n", finding.choice()));
     text.push_str(&format!(
-        "K_P of the magnitude optimum with tf = {} s: {} +/- {}\n",
+        "K_P of the magnitude optimum with tf = {} s: {} +/- {} (90 %), a standard deviation of {}\n",
         number(found.tf),
         number(found.kp),
-        number(found.kp_interval)
+        number(found.kp_interval),
+        per_cent(found.kp_spread)
     ));
     if let (Some(model), Some(half)) = (found.model, found.model_interval) {
         text.push_str(&format!("\n{:<10}{:>12}{:>12}\n", "model", "value", "+/- (90 %)"));
@@ -176,7 +177,8 @@ struct Model {
     dead_time: f64,
 }
 
-/// Half widths of 90 % intervals; spreads are standard deviations over values.
+/// Half widths of 90 % intervals; a spread is the same as a relative standard deviation: the half width
+/// over 1.8 times the value.
 #[derive(Serialize)]
 struct Uncertainty {
     areas: [f64; 6],

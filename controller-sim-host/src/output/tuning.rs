@@ -20,8 +20,12 @@ pub struct Tuning<'a> {
     pub warnings: &'a [String],
     /// The simulated set-point step and load step.
     pub events: [Metrics; 2],
-    /// Largest distance of the model's response from the record \[y\].
+    /// Largest distance of the response of the loop's model from the record \[y\].
     pub worst_residual: f64,
+    /// Number of lags of that model.
+    pub order: usize,
+    /// Lowest and highest output that the simulated controller asks for \[u\].
+    pub range: (f64, f64),
 }
 
 impl Tuning<'_> {
@@ -31,7 +35,7 @@ impl Tuning<'_> {
     }
 
     /// What the simulation gave: names, values and their units.
-    pub(crate) fn simulated(&self, unit: &str) -> [(&'static str, String, String); 4] {
+    pub(crate) fn simulated(&self, unit: &str) -> [(&'static str, String, String); 5] {
         let y = if unit.trim().is_empty() { "y" } else { unit.trim() };
         let [setpoint, load] = &self.events;
         let area = format!("{y} s");
@@ -40,7 +44,8 @@ impl Tuning<'_> {
             ("IAE of the set-point step", number(setpoint.iae), area.clone()),
             ("IAE of the load step", number(load.iae), area),
             ("largest error of the load step", number(load.e_max), y.to_owned()),
-            ("largest residual, second-order model", number(self.worst_residual), y.to_owned()),
+            ("output asked for", format!("{} to {}", number(self.range.0), number(self.range.1)), "u".to_owned()),
+            ("largest residual of the model", number(self.worst_residual), y.to_owned()),
         ]
     }
 }
@@ -50,7 +55,8 @@ impl Tuning<'_> {
 pub fn tune_table(tuning: &Tuning<'_>) -> String {
     let mut out = identify_table(&tuning.finding);
     out.push_str(&format!(
-        "largest distance of the second-order model from the record: {}\n\n",
+        "largest distance of the loop's model, of order {}, from the record: {}\n\n",
+        tuning.order,
         format_number(tuning.worst_residual)
     ));
     out.push_str(&design_table(tuning.made));
@@ -63,6 +69,13 @@ pub fn tune_table(tuning: &Tuning<'_>) -> String {
         "load, a fifth of the input's",
         format_number(load.iae),
         format_number(load.e_max)
+    ));
+    let (lo, hi) = tuning.range;
+    out.push_str(&format!(
+        "  output asked for: {} to {}, largest |u| {}\n",
+        format_number(lo),
+        format_number(hi),
+        format_number(lo.abs().max(hi.abs()))
     ));
     if !tuning.warnings.is_empty() {
         out.push_str("\nwarnings:\n");
@@ -81,6 +94,7 @@ struct Object<'a> {
     worst_residual: f64,
     setpoint_step: Loop,
     load_step: Loop,
+    u_range: [f64; 2],
     warnings: &'a [String],
     saved: Option<&'a str>,
     report: Option<&'a str>,
@@ -110,6 +124,7 @@ pub fn tune_json(tuning: &Tuning<'_>, saved: Option<&str>, report: Option<&str>)
         worst_residual: tuning.worst_residual,
         setpoint_step: (&tuning.events[0]).into(),
         load_step: (&tuning.events[1]).into(),
+        u_range: tuning.range.into(),
         warnings: tuning.warnings,
         saved,
         report,

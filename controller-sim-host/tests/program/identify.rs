@@ -54,6 +54,11 @@ fn a_clean_step_gives_its_process() {
         "temperatur",
     ]));
     assert_eq!(other["areas"], value["areas"]);
+    let columns = ["identify", "step.csv", "--json", "--input", "2", "--output", "3"];
+    let same = json(&folder.run(&[&columns[..], &["--log-ts", "0.25"]].concat()));
+    assert_eq!(same["areas"], value["areas"]);
+    let refused = folder.refused(&["identify", "step.csv", "--log-ts", "0.25", "--ts", "0.25"]);
+    assert!(refused.contains("cannot be used with"), "{refused}");
 }
 
 #[test]
@@ -105,6 +110,10 @@ fn what_is_wrong_has_its_place_and_its_code() {
     assert!(folder.refused(&["identify", "wide.csv"]).contains("--input"));
     assert!(folder.refused(&["identify", "wide.csv", "--ts", "0"]).contains("above 0"));
 
+    folder.write("untimed.csv", "u,y\n0,1\n0,1\n1,1\n");
+    let shown = folder.refused(&["identify", "untimed.csv"]);
+    assert!(shown.contains("`--log-ts S`"), "{shown}");
+
     // Well formed, but nothing can be concluded.
     let rows: String = (0..100).map(|i| format!("{i},1,{}\n", i % 3)).collect();
     folder.write("still.csv", &format!("time,u,y\n{rows}"));
@@ -117,6 +126,21 @@ fn what_is_wrong_has_its_place_and_its_code() {
     );
     let output = folder.run(&["identify", "still.csv", "--json"]);
     assert_eq!((output.status.code(), json(&output)["error"]["code"].as_str()), (Some(3), Some("refused")));
+}
+
+#[test]
+fn an_integrating_process_is_refused_with_what_to_do() {
+    let folder = Folder::new("identify-tank");
+    let rows: String = (0..300)
+        .map(|i| {
+            format!("{i},{},{}\n", if i < 30 { 20 } else { 25 }, 3.0 + 0.04 * f64::from((i - 33).max(0)))
+        })
+        .collect();
+    folder.write("tank.csv", &format!("time,valve,level\n{rows}"));
+    let output = folder.run(&["identify", "tank.csv"]);
+    let shown = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{shown}");
+    assert!(shown.contains("the process integrates") && shown.contains("K*exp(-L*s)/s"), "{shown}");
 }
 
 /// A real log, where there is one beside the source tree: 10-bit steps, a doubled first stamp, gaps of 1.01 s.

@@ -129,6 +129,65 @@ fn the_recorded_heater_gives_a_loop_for_the_commissioning_file() {
     }
 }
 
+/// The rows of a log without times and the period of the controller are two things.
+#[test]
+fn a_log_without_times_is_tuned_for_any_period() {
+    let folder = Folder::new("tune-untimed");
+    let log = valve();
+    folder.write("timed.csv", &log);
+    let bare: String =
+        log.lines().filter_map(|line| line.split_once(';')).map(|(_, rest)| format!("{rest}\n")).collect();
+    folder.write("bare.csv", &bare);
+    let common =
+        ["--input", "Ventil", "--output", "Temperatur", "--method", "momi", "--limits", "0:100", "--json"];
+    let tuned = |options: &[&str]| json(&folder.run(&[&["tune"], options, &common[..]].concat()));
+    let timed = tuned(&["timed.csv", "--time", "Zeit", "--ts", "5"]);
+    let untimed = tuned(&["bare.csv", "--log-ts", "2", "--ts", "5"]);
+    assert_eq!(timed["design"]["pid"], untimed["design"]["pid"], "{untimed}");
+    assert_eq!(untimed["design"]["ts"], 5.0);
+    assert_eq!(tuned(&["bare.csv", "--log-ts", "2"])["design"]["ts"], 2.0);
+    let refused = folder.refused(&["tune", "bare.csv", "--ts", "5"]);
+    assert!(refused.contains("`--log-ts S`"), "{refused}");
+}
+
+/// A long record of four equal lags: the loop works on the richer fit, and the residual is that one's.
+#[test]
+fn the_residual_is_that_of_the_model_in_the_loop_and_the_output_is_said() {
+    let folder = Folder::new("tune-rich");
+    let mut text = "time,u,y\n".to_owned();
+    for row in 0..1200 {
+        let t = 0.1 * f64::from(row);
+        let x = (t - 10.0).max(0.0);
+        // 3/(1+s)^4, and noise of one part in a hundred of the change, from a fixed sequence.
+        let step = 1.0 - (-x).exp() * (1.0 + x + x * x / 2.0 + x * x * x / 6.0);
+        let noise = f64::from((row * 7919 + row * row % 104_729) % 1000) / 1000.0 - 0.5;
+        text.push_str(&format!(
+            "{t:.1},{},{:.5}\n",
+            if t < 10.0 { 5 } else { 7 },
+            1.0 + 6.0 * step + 0.2 * noise
+        ));
+    }
+    folder.write("four.csv", &text);
+    let tuned = json(&folder.run(&["tune", "four.csv", "--json"]));
+    check(&tuned);
+    // Half of the noise's range is 0.1; the model of second order is off by up to 0.14 more.
+    let chosen = &tuned["identified"]["chosen"];
+    if chosen == "fit" {
+        assert!(number(&tuned["worst_residual"]) < 0.14, "{}", tuned["worst_residual"]);
+    }
+    let (lo, hi) = (number(&tuned["u_range"][0]), number(&tuned["u_range"][1]));
+    assert!(lo <= 5.0 && hi >= 7.0, "{lo} {hi}");
+    let shown = folder.done(&["tune", "four.csv"]);
+    for part in ["no limits given: the simulated output is not limited", "--limits LO:HI", "largest |u| "] {
+        assert!(shown.contains(part), "{part}: {shown}");
+    }
+    let limited = json(&folder.run(&["tune", "four.csv", "--limits", "0:8", "--json"]));
+    let (lo, hi) = (number(&limited["u_range"][0]), number(&limited["u_range"][1]));
+    assert!(lo >= 0.0 && hi <= 8.0, "{lo} {hi}");
+    assert!(!limited["warnings"].to_string().contains("no limits given"), "{}", limited["warnings"]);
+    println!("{chosen}, {}, {}", tuned["worst_residual"], tuned["u_range"]);
+}
+
 #[test]
 fn what_gives_no_loop_is_refused() {
     let folder = Folder::new("tune-wrong");
