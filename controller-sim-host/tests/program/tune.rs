@@ -150,9 +150,9 @@ fn a_log_without_times_is_tuned_for_any_period() {
     assert!(refused.contains("`--log-ts S`"), "{refused}");
 }
 
-/// A long record of four equal lags: the loop works on the richer fit, and the residual is that one's.
+/// Four equal lags under much noise; without limits the output goes where it wants, and that is said.
 #[test]
-fn the_residual_is_that_of_the_model_in_the_loop_and_the_output_is_said() {
+fn the_residual_and_the_output_that_is_asked_for_are_said() {
     let folder = Folder::new("tune-rich");
     let mut text = "time,u,y\n".to_owned();
     for row in 0..1200 {
@@ -170,13 +170,11 @@ fn the_residual_is_that_of_the_model_in_the_loop_and_the_output_is_said() {
     folder.write("four.csv", &text);
     let tuned = json(&folder.run(&["tune", "four.csv", "--json"]));
     check(&tuned);
-    // Half of the noise's range is 0.1; the model of second order is off by up to 0.14 more.
-    let chosen = &tuned["identified"]["chosen"];
-    if chosen == "fit" {
-        assert!(number(&tuned["worst_residual"]) < 0.14, "{}", tuned["worst_residual"]);
-    }
+    // Half of the noise's range is 0.1; the rest is what two lags leave of four.
+    assert!((0.09..0.25).contains(&number(&tuned["worst_residual"])), "{}", tuned["worst_residual"]);
     let (lo, hi) = (number(&tuned["u_range"][0]), number(&tuned["u_range"][1]));
-    assert!(lo <= 5.0 && hi >= 7.0, "{lo} {hi}");
+    // It rests at 7 without the load, at 6.6 with it, and without limits the first move goes beyond 8.
+    assert!(lo <= 6.6 && hi > 8.0, "{lo} {hi}");
     let shown = folder.done(&["tune", "four.csv"]);
     for part in ["no limits given: the simulated output is not limited", "--limits LO:HI", "largest |u| "] {
         assert!(shown.contains(part), "{part}: {shown}");
@@ -185,7 +183,6 @@ fn the_residual_is_that_of_the_model_in_the_loop_and_the_output_is_said() {
     let (lo, hi) = (number(&limited["u_range"][0]), number(&limited["u_range"][1]));
     assert!(lo >= 0.0 && hi <= 8.0, "{lo} {hi}");
     assert!(!limited["warnings"].to_string().contains("no limits given"), "{}", limited["warnings"]);
-    println!("{chosen}, {}, {}", tuned["worst_residual"], tuned["u_range"]);
 }
 
 #[test]
