@@ -391,7 +391,9 @@ fn a_record_without_the_experiment_is_refused_for_what_it_shows() {
             i += 1.5 * ts / 0.9 * (sp - pv);
             let co = i + 1.5 * (sp - pv);
             record.t.push(ts * f64::from(k));
-            (record.sp.push(sp), record.pv.push(pv), record.co.push(co));
+            record.sp.push(sp);
+            record.pv.push(pv);
+            record.co.push(co);
             y += (co - y) * ts;
         }
         assert_eq!(unclear(&record), Reason::SetpointChange, "{size}, {noise}");

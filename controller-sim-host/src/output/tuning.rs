@@ -44,7 +44,11 @@ impl Tuning<'_> {
             ("IAE of the set-point step", number(setpoint.iae), area.clone()),
             ("IAE of the load step", number(load.iae), area),
             ("largest error of the load step", number(load.e_max), y.to_owned()),
-            ("output asked for", format!("{} to {}", number(self.range.0), number(self.range.1)), "u".to_owned()),
+            (
+                "output asked for",
+                format!("{} to {}", number(self.range.0), number(self.range.1)),
+                "u".to_owned(),
+            ),
             ("largest residual of the model", number(self.worst_residual), y.to_owned()),
         ]
     }
