@@ -77,7 +77,7 @@ impl<T: Real> AntiWindup<T> {
     #[must_use]
     #[inline(always)]
     pub fn correction(&self, increment: T, v: T, applied: T) -> T {
-        let further = (v > applied && increment > T::ZERO) || (v < applied && increment < T::ZERO);
-        if self.conditional && further { -increment } else { self.gain * (applied - v) }
+        let further = || (v > applied && increment > T::ZERO) || (v < applied && increment < T::ZERO);
+        if self.conditional && further() { -increment } else { self.gain * (applied - v) }
     }
 }

@@ -110,6 +110,10 @@ impl<T: Real> Limit<T> {
     pub fn apply(&self, last: &mut Accumulator<T>, v: T) -> Limited<T> {
         let rate = last.approach(v, self.down, self.up);
         let slewed = last.value();
+        // Nearly every sample: what follows would leave the output as it is.
+        if slewed > self.lo && slewed < self.hi {
+            return Limited { u: slewed, high: false, low: false, rate };
+        }
         let u = slewed.clamp_to(self.lo, self.hi);
         if u != slewed {
             last.set(u);

@@ -171,6 +171,16 @@ impl<T: Real> SampleGuard<T> {
         })
     }
 
+    /// Whether `y` is as good as the measurements before: [`judge`](Self::judge) then says [`Verdict::Use`] and changes
+    /// nothing.
+    #[inline(always)]
+    pub(crate) fn goes_on(&self, state: &SampleGuardState, y: T, quality: Quality) -> bool {
+        let [low, high] = state.bad.to_le_bytes();
+        let nothing_remembered =
+            u32::from_le_bytes([low, high, u8::from(state.fallback), u8::from(state.settle)]) == 0;
+        y >= self.lo && y <= self.hi && quality == Quality::Good && nothing_remembered
+    }
+
     /// Judges the measurement `y` of quality `quality`.
     #[inline]
     pub fn judge(&self, state: &mut SampleGuardState, y: T, quality: Quality, acknowledge: bool) -> Verdict {

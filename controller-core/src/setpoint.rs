@@ -105,7 +105,12 @@ impl<T: Real> Setpoint<T> {
     /// As [`advance`](Self::advance) for a set-point that is in the range already.
     #[inline(always)]
     pub fn ramp(&self, working: &mut Accumulator<T>, r: T) {
-        let _ = working.approach(r, self.down, self.up);
+        // Most set-points rest: one compare for them.
+        if r == working.value() {
+            working.set(r);
+        } else {
+            let _ = working.approach(r, self.down, self.up);
+        }
     }
 
     /// `r` moved into the range \[y\].
@@ -113,6 +118,12 @@ impl<T: Real> Setpoint<T> {
     #[inline(always)]
     pub fn into_range(&self, r: T) -> T {
         r.clamp_to(self.lo, self.hi)
+    }
+
+    /// Whether `r` is within the range and not at an end of it: [`into_range`](Self::into_range) then gives `r`.
+    #[inline(always)]
+    pub(crate) fn is_inside(&self, r: T) -> bool {
+        r > self.lo && r < self.hi
     }
 
     /// Whether the working set-point follows the measurement while the loop is open.

@@ -78,6 +78,12 @@ impl Status {
         self.0 & other.0 == other.0
     }
 
+    /// Some bit of `other` is set.
+    #[inline(always)]
+    pub(crate) const fn has_any(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
     /// The bits as a number.
     #[must_use]
     pub const fn bits(self) -> u32 {

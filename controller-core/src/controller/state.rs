@@ -122,6 +122,12 @@ impl<T: Real, S, P> ControllerState<T, S, P> {
         &self.compensator
     }
 
+    /// The flags as one word, which they are in memory, too.
+    #[inline(always)]
+    pub(super) fn flags(&self) -> u32 {
+        u32::from_le_bytes([self.compensating, self.overrun, self.awake, self.started].map(u8::from))
+    }
+
     /// Words of everything but the compensator, `law` being the numbers of the law's state.
     pub(super) const fn own_words(law: usize) -> usize {
         (law + NUMBERS) * T::WORDS + FLAGS

@@ -23,13 +23,68 @@ struct Checked<T> {
     mode: Mode,
 }
 
+/// [`ControllerState::flags`] of a loop that has started and lost nothing, without the compensator's.
+const FLAGS_OF_A_LOOP_AT_WORK: u32 = 0x0101_0000;
+
 impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// One sample. See the type and the [module](crate::controller) for what it computes and costs.
+    #[inline]
     pub fn step(
         &self,
         state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
     ) -> ControllerOutput<T> {
+        let (estimate, status) =
+            if self.goes_on(state, input) { self.go_on(state, input) } else { self.step_any(state, input) };
+        self.output(state, estimate, status)
+    }
+
+    /// Whether this sample is like the last one: the loop is closed, in the same mode, with or without the compensator as
+    /// before, the measurement is good and nothing is to be caught up with. Most samples are.
+    #[inline(always)]
+    fn goes_on(
+        &self,
+        state: &ControllerState<T, C::State, L::State>,
+        input: &ControllerInput<T>,
+    ) -> bool {
+        self.guard.goes_on(&state.guard, input.y, input.quality)
+            && input.mode == state.mode
+            && input.mode.is_automatic()
+            && state.flags() == FLAGS_OF_A_LOOP_AT_WORK | u32::from(input.compensate)
+    }
+
+    /// What [`step_any`](Self::step_any) does in a sample that [goes on](Self::goes_on), without its questions.
+    #[inline(always)]
+    fn go_on(
+        &self,
+        state: &mut ControllerState<T, C::State, L::State>,
+        input: &ControllerInput<T>,
+    ) -> (CompensatorOutput<T>, Status) {
+        let offset = state.offset;
+        let taken = self.take_setpoint_and_offset(state, input);
+        let (applied, replaced) = self.applied(state.u.value(), input.u_applied);
+        state.y = input.y;
+        let estimate = self.compensator.sample(&mut state.compensator, input.y, applied);
+        let u_f = if input.compensate { estimate.u_f } else { T::ZERO };
+        state.u_f = u_f;
+        self.setpoint.ramp(&mut state.r, state.r_asked);
+        let mode = input.mode;
+        let sample = Checked { y: input.y, u_f, applied, own: applied - offset, was: mode, mode };
+        let inhibited = self.automatic(state, input, &sample, None);
+        let limited = self.limit.apply(&mut state.u, state.v);
+        state.alarms = self.alarms.check(state.alarms, state.r.value(), input.y);
+        let compensating = Status::COMPENSATING.when(C::PRESENT && input.compensate);
+        (estimate, taken | replaced | inhibited | compensating | self.last_bits(state, limited))
+    }
+
+    /// Any sample.
+    #[cold]
+    #[inline(never)]
+    fn step_any(
+        &self,
+        state: &mut ControllerState<T, C::State, L::State>,
+        input: &ControllerInput<T>,
+    ) -> (CompensatorOutput<T>, Status) {
         let mut status = Status::OVERRUN.when(state.overrun);
         state.overrun = false;
         let offset = state.offset;
@@ -99,13 +154,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         if usable || verdict == Verdict::Await {
             state.alarms = self.alarms.check(state.alarms, state.r.value(), y);
         }
-        status |= Status::COMPENSATING.when(C::PRESENT && input.compensate && mode.is_automatic())
-            | Status::LIMITED_HIGH.when(limited.high)
-            | Status::LIMITED_LOW.when(limited.low)
-            | Status::RATE_LIMITED.when(limited.rate)
-            | Status::SETPOINT_RAMPING.when(state.r.value() != state.r_asked)
-            | state.alarms;
-        self.output(state, estimate, status)
+        status |= Status::COMPENSATING.when(C::PRESENT && input.compensate && mode.is_automatic());
+        (estimate, status | self.last_bits(state, limited))
     }
 
     /// The automatic output of this sample, into `state.v`.
@@ -151,7 +201,12 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     ) -> Status {
         let seen = self.seen(state.r.value(), sample.y);
         let increment = self.law.increment(&state.law, seen);
-        let allowed = self.allowed(input, increment);
+        let (allowed, inhibited) = if input.inhibit_up | input.inhibit_down {
+            let allowed = self.allowed(input, increment);
+            (allowed, Status::INHIBITED.when(allowed != increment))
+        } else {
+            (increment, Status::NONE)
+        };
         state.pd = self.law.filter(&mut state.law, seen, sample.own);
         match begin {
             Some((v, increment)) => {
@@ -164,7 +219,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         }
         self.law.bound_integral(&mut state.law, self.integral_bound);
         state.v = L::integral(&state.law) + state.pd + state.offset + sample.u_f;
-        Status::INHIBITED.when(allowed != increment)
+        inhibited
     }
 
     /// The increment that a secondary loop lets through.
@@ -260,18 +315,21 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         self.setpoint_of(mode, input).unwrap_or(state.r_asked)
     }
 
+    #[inline(always)]
     fn take_setpoint_and_offset(
         &self,
         state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
     ) -> Status {
         let mut status = Status::NONE;
-        match self.setpoint_of(input.mode, input) {
-            Some(r) => {
-                state.r_asked = self.setpoint.into_range(r);
-                status |= Status::SETPOINT_LIMITED.when(state.r_asked != r);
-            }
-            None => status |= Status::REJECTED,
+        let r = if input.mode == Mode::Cascade { input.r_remote } else { input.r };
+        if self.setpoint.is_inside(r) {
+            state.r_asked = r;
+        } else if r.is_finite_number() {
+            state.r_asked = self.setpoint.into_range(r);
+            status |= Status::SETPOINT_LIMITED.when(state.r_asked != r);
+        } else {
+            status |= Status::REJECTED;
         }
         if input.offset >= self.offset_lo && input.offset <= self.offset_hi {
             state.offset = input.offset;
@@ -280,9 +338,12 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
             let offset = if input.offset.is_finite_number() { input.offset } else { state.offset };
             state.offset = offset.clamp_to(self.offset_lo, self.offset_hi);
         }
-        let manual_bad = input.mode == Mode::Manual && input.manual.is_some_and(|x| !x.is_finite_number());
-        let track_bad = input.mode == Mode::Track && !input.track.is_finite_number();
-        status | Status::REJECTED.when(manual_bad || track_bad)
+        let unusable = match input.mode {
+            Mode::Manual => input.manual.is_some_and(|x| !x.is_finite_number()),
+            Mode::Track => !input.track.is_finite_number(),
+            _ => false,
+        };
+        status | Status::REJECTED.when(unusable)
     }
 
     /// What was applied since the last sample \[u\].
@@ -338,7 +399,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         input: &ControllerInput<T>,
         applied: T,
         status: Status,
-    ) -> ControllerOutput<T> {
+    ) -> (CompensatorOutput<T>, Status) {
         let requested = input.mode.in_force(state.guard.fallback);
         let mode = if requested.is_automatic() { Mode::Hold } else { requested };
         state.v = self.target(mode, input).unwrap_or(applied);
@@ -346,12 +407,15 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         let slowest = if mode == Mode::Fallback { Some(self.guard.fallback_output().1) } else { None };
         let limited = self.limit_output(state, state.v, slowest);
         state.r.set(state.r_asked);
-        let status = status
-            | Status::LIMITED_HIGH.when(limited.high)
-            | Status::LIMITED_LOW.when(limited.low)
-            | Status::RATE_LIMITED.when(limited.rate);
         state.mode = mode;
-        self.output(state, CompensatorOutput::default(), status | Status::UNINITIALISED)
+        let status = status | limited_status(limited) | Status::UNINITIALISED;
+        (CompensatorOutput::default(), status)
+    }
+
+    /// The bits that every sample ends with.
+    #[inline(always)]
+    fn last_bits(&self, state: &ControllerState<T, C::State, L::State>, limited: Limited<T>) -> Status {
+        limited_status(limited) | Status::SETPOINT_RAMPING.when(state.r.value() != state.r_asked) | state.alarms
     }
 
     #[inline(always)]
@@ -361,10 +425,19 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         estimate: CompensatorOutput<T>,
         status: Status,
     ) -> ControllerOutput<T> {
-        let (lo, hi) = self.setpoint.range();
-        let full = status.has(Status::LIMITED_HIGH);
-        let empty = status.has(Status::LIMITED_LOW);
-        let (up, down) = if self.reversed { (empty, full) } else { (full, empty) };
+        let r = state.r.value();
+        let (mut up, mut down) = (false, false);
+        // Both questions are rarely answered with yes.
+        if !self.setpoint.is_inside(r) {
+            let (lo, hi) = self.setpoint.range();
+            (up, down) = (r >= hi, r <= lo);
+        }
+        if status.has_any(Status::LIMITED_HIGH | Status::LIMITED_LOW) {
+            let full = status.has(Status::LIMITED_HIGH);
+            let empty = status.has(Status::LIMITED_LOW);
+            up |= if self.reversed { empty } else { full };
+            down |= if self.reversed { full } else { empty };
+        }
         ControllerOutput {
             u: state.u.value(),
             v: state.v,
@@ -372,13 +445,20 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
             pd: state.pd,
             u_f: estimate.u_f,
             d_hat: estimate.d_hat,
-            r: state.r.value(),
-            blocked_up: up || state.r.value() >= hi,
-            blocked_down: down || state.r.value() <= lo,
+            r,
+            blocked_up: up,
+            blocked_down: down,
             mode: state.mode,
             status,
         }
     }
+}
+
+#[inline(always)]
+fn limited_status<T>(limited: Limited<T>) -> Status {
+    Status::LIMITED_HIGH.when(limited.high)
+        | Status::LIMITED_LOW.when(limited.low)
+        | Status::RATE_LIMITED.when(limited.rate)
 }
 
 fn verdict_status(verdict: Verdict, quality: Quality) -> Status {
