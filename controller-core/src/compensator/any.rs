@@ -53,6 +53,17 @@ pub struct AnyCompensatorState<T, M> {
     line: DelayLine<M>,
 }
 
+/// The slice as one of known length, when it has it.
+#[inline(always)]
+fn exactly<X, const L: usize>(list: &[X]) -> Option<&[X; L]> {
+    list.try_into().ok()
+}
+
+#[inline(always)]
+fn exactly_mut<X, const L: usize>(list: &mut [X]) -> Option<&mut [X; L]> {
+    list.try_into().ok()
+}
+
 impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     /// Discretises `config` for the sampling period `ts` \[s\] and delay memory of `capacity` samples.
     ///
@@ -125,6 +136,33 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
         }
     }
 
+    /// A sample of a law with `N` poles and `E` excess sections, in loops of known length; `None`, and nothing moved, when
+    /// it has another shape.
+    #[inline(always)]
+    fn sample_as<const N: usize, const E: usize>(
+        &self,
+        state: &mut AnyCompensatorState<T, M>,
+        y: T,
+        u_applied: T,
+    ) -> Option<CompensatorOutput<T>> {
+        let law = Coefficients {
+            g: exactly::<T, N>(&self.g)?,
+            y_feed: exactly::<T, N>(&self.y_feed)?,
+            y_lead: exactly::<T, N>(&self.y_lead)?,
+            y_dc: exactly::<T, N>(&self.y_dc)?,
+            u_lead: exactly::<T, N>(&self.u_lead)?,
+            e_gain: exactly::<T, E>(&self.e_gain)?,
+            ..self.coefficients()
+        };
+        let lags = LagsView {
+            y: exactly_mut::<Lag<T>, N>(&mut state.y)?,
+            u: exactly_mut::<Lag<T>, N>(&mut state.u)?,
+            e: exactly_mut::<Lag<T>, E>(&mut state.e)?,
+        };
+        let view = StateView { lags, line: &mut state.line, reference: &mut state.reference };
+        Some(view.sample(&law, y, u_applied))
+    }
+
     /// Order of the chains and number of excess sections.
     #[must_use]
     pub fn shape(&self) -> (usize, usize) {
@@ -170,7 +208,16 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
     type State = AnyCompensatorState<T, M>;
 
     fn sample(&self, state: &mut Self::State, y: T, u_applied: T) -> CompensatorOutput<T> {
-        state.view().sample(&self.coefficients(), y, u_applied)
+        // The shapes of the estimators, by far the most frequent: half of the instructions.
+        let known = match self.shape() {
+            (2, 1) => self.sample_as::<2, 1>(state, y, u_applied),
+            (1, 2) => self.sample_as::<1, 2>(state, y, u_applied),
+            _ => None,
+        };
+        match known {
+            Some(output) => output,
+            None => state.view().sample(&self.coefficients(), y, u_applied),
+        }
     }
 
     fn settle(&self, state: &mut Self::State, y0: T, u0: T) {

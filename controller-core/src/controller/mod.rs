@@ -18,6 +18,7 @@ mod keep;
 mod law;
 mod state;
 mod step;
+mod usual;
 
 pub use config::ControllerConfig;
 pub use io::{ControllerInput, ControllerOutput};

@@ -13,18 +13,15 @@ use crate::sample::{Quality, Verdict};
 use crate::status::Status;
 
 /// What a sample works with once its inputs are checked.
-struct Checked<T> {
-    y: T,
-    u_f: T,
-    applied: T,
+pub(super) struct Checked<T> {
+    pub(super) y: T,
+    pub(super) u_f: T,
+    pub(super) applied: T,
     /// The part of `applied` that the law itself has moved.
-    own: T,
-    was: Mode,
-    mode: Mode,
+    pub(super) own: T,
+    pub(super) was: Mode,
+    pub(super) mode: Mode,
 }
-
-/// [`ControllerState::flags`] of a loop that has started and lost nothing, without the compensator's.
-const FLAGS_OF_A_LOOP_AT_WORK: u32 = 0x0101_0000;
 
 impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// One sample. See the type and the [module](crate::controller) for what it computes and costs.
@@ -39,48 +36,10 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         self.output(state, estimate, status)
     }
 
-    /// Whether this sample is like the last one: the loop is closed, in the same mode, with or without the compensator as
-    /// before, the measurement is good and nothing is to be caught up with. Most samples are.
-    #[inline(always)]
-    fn goes_on(
-        &self,
-        state: &ControllerState<T, C::State, L::State>,
-        input: &ControllerInput<T>,
-    ) -> bool {
-        self.guard.goes_on(&state.guard, input.y, input.quality)
-            && input.mode == state.mode
-            && input.mode.is_automatic()
-            && state.flags() == FLAGS_OF_A_LOOP_AT_WORK | u32::from(input.compensate)
-    }
-
-    /// What [`step_any`](Self::step_any) does in a sample that [goes on](Self::goes_on), without its questions.
-    #[inline(always)]
-    fn go_on(
-        &self,
-        state: &mut ControllerState<T, C::State, L::State>,
-        input: &ControllerInput<T>,
-    ) -> (CompensatorOutput<T>, Status) {
-        let offset = state.offset;
-        let taken = self.take_setpoint_and_offset(state, input);
-        let (applied, replaced) = self.applied(state.u.value(), input.u_applied);
-        state.y = input.y;
-        let estimate = self.compensator.sample(&mut state.compensator, input.y, applied);
-        let u_f = if input.compensate { estimate.u_f } else { T::ZERO };
-        state.u_f = u_f;
-        self.setpoint.ramp(&mut state.r, state.r_asked);
-        let mode = input.mode;
-        let sample = Checked { y: input.y, u_f, applied, own: applied - offset, was: mode, mode };
-        let inhibited = self.automatic(state, input, &sample, None);
-        let limited = self.limit.apply(&mut state.u, state.v);
-        state.alarms = self.alarms.check(state.alarms, state.r.value(), input.y);
-        let compensating = Status::COMPENSATING.when(C::PRESENT && input.compensate);
-        (estimate, taken | replaced | inhibited | compensating | self.last_bits(state, limited))
-    }
-
     /// Any sample.
     #[cold]
     #[inline(never)]
-    fn step_any(
+    pub(super) fn step_any(
         &self,
         state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
@@ -192,7 +151,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// Law + offset + compensator; with `begin`, the integral term is set so that the sum is its first number, of which
     /// the second is the increment that the next sample may still take back.
     #[inline(always)]
-    fn automatic(
+    pub(super) fn automatic(
         &self,
         state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
@@ -316,7 +275,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     }
 
     #[inline(always)]
-    fn take_setpoint_and_offset(
+    pub(super) fn take_setpoint_and_offset(
         &self,
         state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
@@ -348,7 +307,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
 
     /// What was applied since the last sample \[u\].
     #[inline(always)]
-    fn applied(&self, own: T, read_back: Option<T>) -> (T, Status) {
+    pub(super) fn applied(&self, own: T, read_back: Option<T>) -> (T, Status) {
         match read_back {
             Some(a) if a.is_finite_number() => (self.limit.into_range(a), Status::NONE),
             Some(_) => (own, Status::REJECTED),
@@ -414,12 +373,12 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
 
     /// The bits that every sample ends with.
     #[inline(always)]
-    fn last_bits(&self, state: &ControllerState<T, C::State, L::State>, limited: Limited<T>) -> Status {
+    pub(super) fn last_bits(&self, state: &ControllerState<T, C::State, L::State>, limited: Limited<T>) -> Status {
         limited_status(limited) | Status::SETPOINT_RAMPING.when(state.r.value() != state.r_asked) | state.alarms
     }
 
     #[inline(always)]
-    fn output(
+    pub(super) fn output(
         &self,
         state: &ControllerState<T, C::State, L::State>,
         estimate: CompensatorOutput<T>,

@@ -30,7 +30,12 @@ pub struct LinearPlant {
     system: StateSpace,
     /// Angular frequencies of the sines \[rad/s\].
     frequencies: Vec<f64>,
+    /// Number of states.
+    order: usize,
+    /// The states, and zeros up to [`SMALL`] of them.
     x: Vec<f64>,
+    /// The weights of the states in the output, as long as `x`.
+    c: Vec<f64>,
     next: Vec<f64>,
     /// `c*x`: the output without feed-through.
     inside: f64,
@@ -43,7 +48,12 @@ struct Step {
     h: f64,
     /// A column for each state, the input, its slope, sine and quadrature of each frequency; as long as there are states.
     columns: Vec<f64>,
+    /// The same of a small plant without sines, for loops of known length.
+    small: [f64; SMALL * (SMALL + 2)],
 }
+
+/// Most states of a plant whose steps have a length that the compiler knows.
+const SMALL: usize = 6;
 
 /// Lengths of steps whose matrices are kept, besides those that were prepared.
 const KEPT: usize = 64;
@@ -58,9 +68,13 @@ impl LinearPlant {
     /// A plant with the state `x`, whose input has sines of these angular frequencies \[rad/s\].
     #[must_use]
     pub fn with_waves(system: StateSpace, x: Vec<f64>, frequencies: Vec<f64>) -> Self {
-        let next = x.clone();
         let inside = dot(&system.c, &x);
-        Self { system, frequencies, x, next, inside, steps: Vec::new() }
+        let order = x.len();
+        let (mut x, mut c) = (x, system.c.clone());
+        x.resize(order.max(SMALL), 0.0);
+        c.resize(order.max(SMALL), 0.0);
+        let next = vec![0.0; order];
+        Self { system, frequencies, order, x, c, next, inside, steps: Vec::new() }
     }
 
     /// The output for the input `w` just before the present instant \[y\].
@@ -76,7 +90,9 @@ impl LinearPlant {
             return index;
         }
         let columns = self.columns(h);
-        self.steps.push(Step { h, columns });
+        let mut small = [0.0; SMALL * (SMALL + 2)];
+        small.iter_mut().zip(&columns).for_each(|(to, from)| *to = *from);
+        self.steps.push(Step { h, columns, small });
         self.steps.len() - 1
     }
 
@@ -95,30 +111,57 @@ impl LinearPlant {
     }
 
     /// Moves through a prepared step; an unknown number moves nothing.
+    #[inline]
     pub fn advance_by(&mut self, index: usize, input: Input, waves: &[Wave]) {
-        let n = self.x.len();
-        let (Some(step), false) = (self.steps.get(index), n == 0) else { return };
+        if !waves.is_empty() {
+            return self.advance_large(index, input, waves);
+        }
+        // Most plants are small: loops of known length cost a third. The order of the sums is the same for all.
+        match self.order {
+            0 => {}
+            1 => self.advance_small::<1>(index, input),
+            2 => self.advance_small::<2>(index, input),
+            3 => self.advance_small::<3>(index, input),
+            4 => self.advance_small::<4>(index, input),
+            5 => self.advance_small::<5>(index, input),
+            6 => self.advance_small::<6>(index, input),
+            _ => self.advance_large(index, input, &[]),
+        }
+    }
+
+    /// A step of a plant of `N` states without sines.
+    #[inline]
+    fn advance_small<const N: usize>(&mut self, index: usize, input: Input) {
+        let (Some(step), Some(x), Some(c)) =
+            (self.steps.get(index), self.x.first_chunk_mut::<N>(), self.c.first_chunk::<N>())
+        else {
+            return;
+        };
         let inputs = [input.value, input.slope * self.system.scale];
-        let (columns, c) = (&*step.columns, &*self.system.c);
-        if waves.is_empty() {
-            // Most plants are small: loops of known length cost a third. The order of the sums is the same for all.
-            let small = match n {
-                1 => small::<1>(columns, c, &mut self.x, inputs),
-                2 => small::<2>(columns, c, &mut self.x, inputs),
-                3 => small::<3>(columns, c, &mut self.x, inputs),
-                4 => small::<4>(columns, c, &mut self.x, inputs),
-                5 => small::<5>(columns, c, &mut self.x, inputs),
-                6 => small::<6>(columns, c, &mut self.x, inputs),
-                _ => None,
-            };
-            if let Some(inside) = small {
-                self.inside = inside;
-                return;
+        let (columns, _) = step.small.as_chunks::<N>();
+        let mut next = [0.0; N];
+        for j in 0..2 {
+            for i in 0..N {
+                next[i] += columns[N + j][i] * inputs[j];
             }
         }
+        for j in 0..N {
+            for i in 0..N {
+                next[i] += columns[j][i] * x[j];
+            }
+        }
+        *x = next;
+        self.inside = dot(c, &next);
+    }
+
+    #[inline(never)]
+    fn advance_large(&mut self, index: usize, input: Input, waves: &[Wave]) {
+        let n = self.order;
+        let (Some(step), false) = (self.steps.get(index), n == 0) else { return };
+        let inputs = [input.value, input.slope * self.system.scale];
         self.next.fill(0.0);
         let of_waves = waves.iter().flat_map(|wave| [wave.sin, wave.cos]);
-        let (of_states, of_inputs) = columns.split_at(n * n);
+        let (of_states, of_inputs) = step.columns.split_at(n * n);
         let factors = inputs.into_iter().chain(of_waves);
         for (column, factor) in of_inputs.chunks_exact(n).zip(factors) {
             self.next.iter_mut().zip(column).for_each(|(next, a)| *next += a * factor);
@@ -126,13 +169,13 @@ impl LinearPlant {
         for (column, factor) in of_states.chunks_exact(n).zip(&self.x) {
             self.next.iter_mut().zip(column).for_each(|(next, a)| *next += a * factor);
         }
-        std::mem::swap(&mut self.x, &mut self.next);
-        self.inside = dot(c, &self.x);
+        self.x[..n].copy_from_slice(&self.next);
+        self.inside = dot(&self.system.c, &self.next);
     }
 
     /// `exp` of the system with the input, its slope and the sines as more states.
     fn columns(&self, h: f64) -> Vec<f64> {
-        let n = self.x.len();
+        let n = self.order;
         let scale = self.system.scale;
         let size = n + 2 + 2 * self.frequencies.len();
         let mut m = Matrix::zero(size);
@@ -154,28 +197,6 @@ impl LinearPlant {
         let exp = m.exp(h / scale);
         (0..size).flat_map(|j| (0..n).map(move |i| (i, j))).map(|(i, j)| exp.at(i, j)).collect()
     }
-}
-
-/// A step of a plant of `N` states without sines; gives `c*x`. `None` when the lengths do not fit.
-#[inline]
-fn small<const N: usize>(columns: &[f64], c: &[f64], x: &mut [f64], inputs: [f64; 2]) -> Option<f64> {
-    let x: &mut [f64; N] = x.try_into().ok()?;
-    let c: &[f64; N] = c.try_into().ok()?;
-    let (columns, _) = columns.as_chunks::<N>();
-    let (of_states, of_inputs) = columns.split_at_checked(N)?;
-    let mut next = [0.0; N];
-    for (column, factor) in of_inputs.iter().zip(inputs) {
-        for i in 0..N {
-            next[i] += column[i] * factor;
-        }
-    }
-    for (column, factor) in of_states.iter().zip(*x) {
-        for i in 0..N {
-            next[i] += column[i] * factor;
-        }
-    }
-    *x = next;
-    Some(dot(c, &next))
 }
 
 #[inline]

@@ -9,17 +9,34 @@ pub(super) struct Positioner {
     actuator: Actuator,
     /// Furthest movement in a sample \[u\].
     step: f64,
+    /// Neither range nor rate, resolution or dead band: it goes where it is told.
+    ideal: bool,
     position: f64,
 }
 
 impl Positioner {
     /// At rest at `u0`, or at the end of its range next to it.
     pub(super) fn new(actuator: Actuator, ts: f64, u0: f64) -> Self {
-        Self { actuator, step: actuator.rate * ts, position: u0.clamp(actuator.lo, actuator.hi) }
+        let Actuator { lo, hi, rate, resolution, deadband, read_back: _ } = actuator;
+        let free = [-lo, hi, rate].iter().all(|&bound| bound == f64::INFINITY);
+        let ideal = free && resolution == 0.0 && deadband == 0.0;
+        Self { actuator, step: rate * ts, ideal, position: u0.clamp(lo, hi) }
     }
 
     /// What acts on the plant when the controller asks for `u` \[u\].
+    #[inline]
     pub(super) fn apply(&mut self, u: f64) -> f64 {
+        if !self.ideal {
+            return self.apply_limited(u);
+        }
+        // As below: an equal zero of the other sign is no movement.
+        if u != self.position {
+            self.position = u;
+        }
+        self.position
+    }
+
+    fn apply_limited(&mut self, u: f64) -> f64 {
         let Actuator { lo, hi, resolution, deadband, .. } = self.actuator;
         let target = u.clamp(lo, hi);
         let way = target - self.position;

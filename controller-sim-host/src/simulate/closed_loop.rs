@@ -44,7 +44,8 @@ pub struct ClosedLoop {
     write: usize,
     disturbance: Curve,
     waves: Vec<Wave>,
-    sample: u64,
+    /// Number of this sample: whole, as a float since it is a time at every step.
+    sample: f64,
     w_before: f64,
 }
 
@@ -72,7 +73,7 @@ impl ClosedLoop {
         let mut plant = LinearPlant::with_waves(system, x, frequencies);
         let grid = grid(ts, substeps.max(1), fraction, &mut plant);
         let line = vec![u0; whole as usize + 2];
-        Some((Self { plant, ts, grid, line, write: 0, disturbance, waves, sample: 0, w_before: w0 }, u0))
+        Some((Self { plant, ts, grid, line, write: 0, disturbance, waves, sample: 0.0, w_before: w0 }, u0))
     }
 
     /// The measurement of this sample, before its output acts \[y\].
@@ -84,38 +85,42 @@ impl ClosedLoop {
     /// Time of this sample \[s\].
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.sample as f64 * self.ts
+        self.sample * self.ts
     }
 
     /// Applies `u` \[u\] and moves to the next sample; `each` sees the output between the samples.
+    #[inline]
     pub fn hold(&mut self, u: f64, mut each: impl FnMut(SubStep)) {
         let (arrived, before) = self.push(u);
-        let k = self.sample as f64;
+        let k = self.sample;
+        self.sample += 1.0;
         // Nothing begins before the next sample and no sine runs: the usual sample, without a question at each step.
-        if self.disturbance.next() >= k + 1.0 - SAME && self.waves.is_empty() {
-            for index in 0..self.grid.len() {
-                let step = self.grid[index];
-                let output = if step.new_output { arrived } else { before };
-                let (d, slope) = self.disturbance.line(k + step.start);
-                self.advance_straight(
-                    k + step.start,
-                    Some(step.index),
-                    step.h,
-                    (output + d, slope),
-                    &mut each,
-                );
-            }
-        } else {
-            for index in 0..self.grid.len() {
-                let step = self.grid[index];
-                let output = if step.new_output { arrived } else { before };
-                self.advance_over_breaks(k, step, output, &mut each);
-            }
+        if self.disturbance.next() < k + 1.0 - SAME || !self.waves.is_empty() {
+            return self.hold_over_breaks(k, (arrived, before), &mut each);
         }
-        self.sample += 1;
+        for &Grid { start, h, index, new_output } in &self.grid {
+            let output = if new_output { arrived } else { before };
+            let (d, slope) = self.disturbance.line(k + start);
+            let value = output + d;
+            let y0 = self.plant.output(value);
+            self.plant.advance_by(index, Input { value, slope }, &[]);
+            self.w_before = value + slope * h;
+            let t0 = (k + start) * self.ts;
+            each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
+        }
+    }
+
+    #[inline(never)]
+    fn hold_over_breaks(&mut self, k: f64, (arrived, before): (f64, f64), each: &mut impl FnMut(SubStep)) {
+        for index in 0..self.grid.len() {
+            let step = self.grid[index];
+            let output = if step.new_output { arrived } else { before };
+            self.advance_over_breaks(k, step, output, each);
+        }
     }
 
     /// Puts `u` into the line: the output that arrives within this sample, and the one before it.
+    #[inline]
     fn push(&mut self, u: f64) -> (f64, f64) {
         let size = self.line.len();
         self.line[self.write] = u;
@@ -150,34 +155,21 @@ impl ClosedLoop {
         self.advance(k + start, index, left, output, each);
     }
 
-    /// Moves from the instant `s` (in samples) through `h` seconds without sines.
-    #[inline]
-    fn advance_straight(
-        &mut self,
-        s: f64,
-        index: Option<usize>,
-        h: f64,
-        (value, slope): (f64, f64),
-        each: &mut impl FnMut(SubStep),
-    ) {
-        let y0 = self.plant.output(value);
-        match index {
-            Some(index) => self.plant.advance_by(index, Input { value, slope }, &[]),
-            None => self.plant.advance(h, Input { value, slope }, &[]),
-        }
-        self.w_before = value + slope * h;
-        let t0 = s * self.ts;
-        each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
-    }
-
     /// Moves from the instant `s` (in samples) through `h` seconds.
     fn advance(&mut self, s: f64, index: Option<usize>, h: f64, output: f64, each: &mut impl FnMut(SubStep)) {
         let (d, slope) = self.disturbance.line(s);
         let value = output + d;
-        if self.waves.is_empty() {
-            return self.advance_straight(s, index, h, (value, slope), each);
-        }
         let t0 = s * self.ts;
+        if self.waves.is_empty() {
+            let y0 = self.plant.output(value);
+            match index {
+                Some(index) => self.plant.advance_by(index, Input { value, slope }, &[]),
+                None => self.plant.advance(h, Input { value, slope }, &[]),
+            }
+            self.w_before = value + slope * h;
+            each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
+            return;
+        }
         let sum = |waves: &[Wave]| waves.iter().map(|wave| wave.sin).sum::<f64>();
         self.disturbance.waves(s, &mut self.waves);
         let y0 = self.plant.output(value + sum(&self.waves));

@@ -248,6 +248,7 @@ impl Curve {
         self.go_to(s)
     }
 
+    #[inline(never)]
     fn go_to(&mut self, s: f64) -> f64 {
         while self.next <= s + SAME {
             self.enter_next();

@@ -114,10 +114,17 @@ impl<T: Real> AnyLaw<T> {
 
     /// One sample.
     pub fn step(&mut self, input: &ControllerInput<T>) -> ControllerOutput<T> {
+        let mut output = ControllerOutput::default();
+        self.step_into(input, &mut output);
+        output
+    }
+
+    /// One sample, written where the last one was: an output has a dozen numbers.
+    pub(super) fn step_into(&mut self, input: &ControllerInput<T>, output: &mut ControllerOutput<T>) {
         match &mut self.block {
-            Block::Plain { law, state } => law.step(state, input),
-            Block::Adrc { law, state } => law.step(state, input),
-            Block::Compensated { law, state } => law.step(state, input),
+            Block::Plain { law, state } => *output = law.step(state, input),
+            Block::Adrc { law, state } => *output = law.step(state, input),
+            Block::Compensated { law, state } => *output = law.step(state, input),
         }
     }
 

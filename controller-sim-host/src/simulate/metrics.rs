@@ -51,6 +51,7 @@ impl Metrics {
     }
 
     /// Adds a sample: error `e`, output `u` after `u_before`.
+    #[inline]
     pub fn add_sample(&mut self, ts: f64, e: f64, u_before: f64, u: f64) {
         self.ie += ts * e;
         self.tv += (u - u_before).abs();

@@ -12,17 +12,18 @@ pub struct Remark {
 /// Counts what remarks are made of.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    samples: u64,
     fallback: (u64, f64),
     rejected: (u64, f64),
     limited: u64,
-    /// Largest error in each tenth of the run.
+    /// Largest error in each tenth of the run, of the present one when it is over.
     tenths: [f64; 10],
     tenth: usize,
+    largest: f64,
     /// Largest error of the last fiftieth, which an event shortly before the end does not reach.
     end: f64,
-    /// The sample with which the next tenth begins, and the length of the run in samples.
+    /// The sample with which the next tenth begins, that with which the last fiftieth does, and the length of the run.
     next_tenth: u64,
+    last_part: u64,
     count: u64,
     automatic: bool,
 }
@@ -36,27 +37,40 @@ const TROUBLE: u32 = Status::FALLBACK.bits()
 impl Watch {
     /// Of a run of `count` samples.
     pub(super) fn new(count: u64) -> Self {
-        Self { count, next_tenth: count.div_ceil(10), ..Self::default() }
+        let last_part = (count - count / 50).saturating_sub(1);
+        Self { count, next_tenth: count.div_ceil(10), last_part, ..Self::default() }
     }
 
     /// The sample `k` at the time `t`.
+    #[inline]
     pub(super) fn sample(&mut self, t: f64, k: u64, e: f64, status: Status, automatic: bool) {
-        self.samples += 1;
         if k >= self.next_tenth {
-            self.tenth = (self.tenth + 1).min(9);
-            self.next_tenth = (self.count * (self.tenth as u64 + 1)).div_ceil(10);
+            self.begin_tenth();
         }
         self.automatic = automatic;
         let e = e.abs();
-        if e > self.tenths[self.tenth] {
-            self.tenths[self.tenth] = e;
+        if e > self.largest {
+            self.largest = e;
         }
-        if k >= self.count - self.count / 50 - 1 && e > self.end {
+        if k >= self.last_part && e > self.end {
             self.end = e;
         }
-        if status.bits() & TROUBLE == 0 {
-            return;
+        if status.bits() & TROUBLE != 0 {
+            self.trouble(t, status);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn begin_tenth(&mut self) {
+        self.tenths[self.tenth] = self.largest;
+        self.tenth = (self.tenth + 1).min(9);
+        self.largest = self.tenths[self.tenth];
+        self.next_tenth = (self.count * (self.tenth as u64 + 1)).div_ceil(10);
+    }
+
+    #[inline(never)]
+    fn trouble(&mut self, t: f64, status: Status) {
         let count = |(n, first): &mut (u64, f64), yes: bool| {
             if yes {
                 *first = if *n == 0 { t } else { *first };
@@ -69,7 +83,8 @@ impl Watch {
     }
 
     /// The remarks; `noise` is the standard deviation of the measurement noise \[y\].
-    pub(super) fn finish(&self, noise: f64) -> Vec<Remark> {
+    pub(super) fn finish(mut self, noise: f64) -> Vec<Remark> {
+        self.tenths[self.tenth] = self.largest;
         let mut list = Vec::new();
         let mut say = |text: String| list.push(Remark { text });
         let (n, first) = self.fallback;
@@ -80,7 +95,7 @@ impl Watch {
         if n > 0 {
             say(format!("{n} samples with an unusable input (not finite), from {first} s on"));
         }
-        let share = 100.0 * self.limited as f64 / self.samples.max(1) as f64;
+        let share = 100.0 * self.limited as f64 / self.count.max(1) as f64;
         if share >= 25.0 {
             say(format!("at an output limit for {share:.0} % of the run"));
         }

@@ -127,9 +127,10 @@ impl<T: Real> Loop<T> {
         Ok(())
     }
 
-    /// The controllers' part of sample `k`.
-    fn sample(&mut self, k: u64) -> Now {
-        let [local, remote] = self.setpoints.each_mut().map(|curve| curve.advance_to(k as f64));
+    /// The controllers' part of sample `s`, a whole number.
+    #[inline(always)]
+    fn sample(&mut self, s: f64) -> Now {
+        let [local, remote] = self.setpoints.each_mut().map(|curve| curve.advance_to(s));
         let r = if self.input.mode == Mode::Cascade { remote } else { local };
         let (exact, shown) = match &mut self.replay {
             Some(replay) => {
@@ -177,7 +178,7 @@ impl<T: Real> Loop<T> {
         input.y = T::from_f64(y);
         input.quality = if bad { Quality::Bad } else { Quality::Good };
         self.bad = self.bad.saturating_sub(1);
-        self.output = self.law.step(&self.input);
+        self.law.step_into(&self.input, &mut self.output);
         self.input.acknowledge = false;
     }
 
@@ -251,24 +252,30 @@ pub(super) fn run_one<T: Real>(
     }
     let watched = options.trace || record.is_some() || sink.is_some();
     let mut events = scenario.events.iter().map(|event| (sample_of(event.at, ts), event)).peekable();
+    // The next sample with an event or a look at the control.
+    let mut pause = 0;
 
     for k in 0..count {
-        if k % CHECKED_EVERY == 0 && k > 0 {
-            control.add(CHECKED_EVERY);
-            if control.is_stopped() {
-                return Err(RunError::Stopped);
-            }
-        }
         let t = control_loop.plant.time();
-        while let Some((_, event)) = events.next_if(|(due, _)| *due <= k) {
-            if event.controller.is_none_or(|only| only == index) {
-                for change in &event.changes {
-                    let changed = control_loop.apply(change, index, t);
-                    changed.map_err(|faults| RunError::Controller { index, faults: Box::new(faults) })?;
+        if k >= pause {
+            if k % CHECKED_EVERY == 0 && k > 0 {
+                control.add(CHECKED_EVERY);
+                if control.is_stopped() {
+                    return Err(RunError::Stopped);
                 }
             }
+            while let Some((_, event)) = events.next_if(|(due, _)| *due <= k) {
+                if event.controller.is_none_or(|only| only == index) {
+                    for change in &event.changes {
+                        let changed = control_loop.apply(change, index, t);
+                        changed.map_err(|faults| RunError::Controller { index, faults: Box::new(faults) })?;
+                    }
+                }
+            }
+            let look = (k / CHECKED_EVERY + 1) * CHECKED_EVERY;
+            pause = events.peek().map_or(look, |(due, _)| look.min(*due));
         }
-        let now = control_loop.sample(k);
+        let now = control_loop.sample(k as f64);
         let e = now.r - now.exact;
         let automatic = control_loop.output.mode.is_automatic();
         stretches.sample(t, ts, e, now.before, control_loop.u);

@@ -41,6 +41,8 @@ pub(super) struct Stretches {
     /// When each takes effect \[s\]: a disturbance at its time, everything else with the next sample.
     list: Vec<(f64, Stretch)>,
     current: usize,
+    /// The current one; its place in the list gets it when it ends.
+    now: Stretch,
     /// When the next one takes effect \[s\]; infinite in the last.
     next: f64,
 }
@@ -77,31 +79,44 @@ impl Stretches {
             list[index - 1].0 = list[index - 1].0.min(list[index].0);
         }
         let next = list.get(1).map_or(f64::INFINITY, |(start, _)| *start);
-        Self { list, current: 0, next }
+        let now = list[0].1;
+        Self { list, current: 0, now, next }
     }
 
     /// Goes to the stretch that holds at the time `t`.
+    #[inline]
     fn enter(&mut self, t: f64) {
         while self.next <= t {
             self.go_on();
         }
     }
 
+    #[cold]
+    #[inline(never)]
     fn go_on(&mut self) {
+        self.list[self.current].1 = self.now;
         self.current += 1;
+        self.now = self.list[self.current].1;
         self.next = self.list.get(self.current + 1).map_or(f64::INFINITY, |(start, _)| *start);
     }
 
     /// A sample at the time `t`: error, output before and after.
+    #[inline]
     pub(super) fn sample(&mut self, t: f64, ts: f64, e: f64, u_before: f64, u: f64) {
         // Sums of periods are not exact; an event on the grid belongs to its sample.
         self.enter(t + 1e-9 * ts);
-        self.list[self.current].1.metrics.add_sample(ts, e, u_before, u);
+        self.now.metrics.add_sample(ts, e, u_before, u);
     }
 
     /// The error between two samples, divided where a stretch begins inside.
     #[inline]
-    pub(super) fn step(&mut self, (mut t0, mut e0): (f64, f64), (t1, e1): (f64, f64)) {
+    pub(super) fn step(&mut self, from: (f64, f64), to: (f64, f64)) {
+        if self.next < to.0 { self.step_divided(from, to) } else { self.add(from, to) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn step_divided(&mut self, (mut t0, mut e0): (f64, f64), (t1, e1): (f64, f64)) {
         while self.next < t1 {
             let start = self.next;
             if start > t0 {
@@ -116,12 +131,13 @@ impl Stretches {
 
     #[inline]
     fn add(&mut self, (t0, e0): (f64, f64), (t1, e1): (f64, f64)) {
-        let stretch = &mut self.list[self.current].1;
-        stretch.metrics.add_step((t0 - stretch.at, e0), (t1 - stretch.at, e1));
+        let at = self.now.at;
+        self.now.metrics.add_step((t0 - at, e0), (t1 - at, e1));
     }
 
     /// The stretches and the indices of the whole run.
-    pub(super) fn finish(self) -> (Vec<Stretch>, Metrics) {
+    pub(super) fn finish(mut self) -> (Vec<Stretch>, Metrics) {
+        self.list[self.current].1 = self.now;
         let list: Vec<Stretch> = self.list.into_iter().map(|(_, stretch)| stretch).collect();
         let total = list.iter().fold(Metrics::default(), |sum, s| sum.plus(&s.metrics));
         (list, total)
