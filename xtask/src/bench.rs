@@ -78,7 +78,9 @@ pub(crate) fn run(root: &Path) -> Outcome {
     }
     let [one, ten, numpy] = [one, ten, numpy].map(Spread::of);
     let (ratio, cost) = (one.highest / numpy.highest, one.highest / ten.highest);
-    println!("\nsimulated samples per second of processor time: fastest of {REPETITIONS} runs (slowest, median)");
+    println!(
+        "\nsimulated samples per second of processor time: fastest of {REPETITIONS} runs (slowest, median)"
+    );
     println!("  controller-sim, 1 substep    {one}");
     println!("  controller-sim, 10 substeps  {ten}");
     println!("  numpy loop                   {numpy}");

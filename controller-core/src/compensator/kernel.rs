@@ -71,20 +71,19 @@ impl<T: Real> Coefficients<'_, T> {
     #[inline(always)]
     fn y_path(&self, lags: &mut [Lag<T>], y: T) -> T {
         let mut x = y;
-        let leads = self.y_feed.chunks_exact(2).zip(self.y_lead.chunks_exact(2));
-        let coefficients = self.g.chunks_exact(2).zip(leads).zip(self.y_dc.chunks_exact(2));
-        let mut sections = lags.chunks_exact_mut(2);
-        for (section, ((g, (feed, lead)), dc)) in sections.by_ref().zip(coefficients) {
-            if let ([first, second], &[g1, g2], &[feed, _], &[e1, e2], &[_, dc]) =
-                (section, g, feed, lead, dc)
-            {
-                let one = first.advance(g1, x);
-                let two = second.advance(g2, one.value + feed * one.difference);
-                x = (dc * two.value + e2 * two.difference) + e1 * one.difference;
-            }
+        let (sections, rest) = lags.as_chunks_mut::<2>();
+        let [(g, _), (feed, _), (lead, _), (dc, _)] =
+            [self.g, self.y_feed, self.y_lead, self.y_dc].map(<[T]>::as_chunks::<2>);
+        let gains = g.iter().zip(feed);
+        let weights = lead.iter().zip(dc);
+        for (([first, second], (g, feed)), (lead, dc)) in sections.iter_mut().zip(gains).zip(weights) {
+            let (&[g1, g2], &[feed, _], &[e1, e2], &[_, dc]) = (g, feed, lead, dc);
+            let one = first.advance(g1, x);
+            let two = second.advance(g2, one.value + feed * one.difference);
+            x = (dc * two.value + e2 * two.difference) + e1 * one.difference;
         }
         if let ([lag], Some(&g), Some(&lead), Some(&dc)) =
-            (sections.into_remainder(), self.g.last(), self.y_lead.last(), self.y_dc.last())
+            (rest, self.g.last(), self.y_lead.last(), self.y_dc.last())
         {
             let before = lag.advance(g, x);
             x = dc * before.value + lead * before.difference;

@@ -373,8 +373,14 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
 
     /// The bits that every sample ends with.
     #[inline(always)]
-    pub(super) fn last_bits(&self, state: &ControllerState<T, C::State, L::State>, limited: Limited<T>) -> Status {
-        limited_status(limited) | Status::SETPOINT_RAMPING.when(state.r.value() != state.r_asked) | state.alarms
+    pub(super) fn last_bits(
+        &self,
+        state: &ControllerState<T, C::State, L::State>,
+        limited: Limited<T>,
+    ) -> Status {
+        limited_status(limited)
+            | Status::SETPOINT_RAMPING.when(state.r.value() != state.r_asked)
+            | state.alarms
     }
 
     #[inline(always)]

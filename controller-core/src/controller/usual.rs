@@ -53,7 +53,12 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
 }
 
 #[cfg(test)]
-#[allow(clippy::cast_possible_truncation, clippy::indexing_slicing, clippy::modulo_arithmetic, clippy::unwrap_used)]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::indexing_slicing,
+    clippy::modulo_arithmetic,
+    clippy::unwrap_used
+)]
 mod tests {
     use super::super::config::ControllerConfig;
     use super::*;
@@ -107,8 +112,10 @@ mod tests {
     }
 
     /// Steps two states, one as it comes and one with all questions; they must never differ.
-    fn both_ways<T: Real, C: Compensate<T>, L: Regulator<T>>(law: &Controller<T, C, L>, state: ControllerState<T, C::State, L::State>)
-    {
+    fn both_ways<T: Real, C: Compensate<T>, L: Regulator<T>>(
+        law: &Controller<T, C, L>,
+        state: ControllerState<T, C::State, L::State>,
+    ) {
         let mut chance = Chance(7);
         let mut next = ControllerInput::default();
         let (mut one, mut other) = (state.clone(), state);

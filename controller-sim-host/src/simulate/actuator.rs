@@ -36,6 +36,7 @@ impl Positioner {
         self.position
     }
 
+    #[inline(never)]
     fn apply_limited(&mut self, u: f64) -> f64 {
         let Actuator { lo, hi, resolution, deadband, .. } = self.actuator;
         let target = u.clamp(lo, hi);

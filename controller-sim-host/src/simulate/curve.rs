@@ -119,6 +119,8 @@ pub(super) struct Curve {
     delay: f64,
     now: Line,
     next: f64,
+    /// As `next` on a level piece without sines; else before everything.
+    level_until: f64,
     /// Sines that are on, one for each of `sines`.
     on: Vec<bool>,
 }
@@ -166,7 +168,16 @@ impl Curve {
         }
         let start = Line { at: f64::NEG_INFINITY, value: level, slope: 0.0 };
         let on = vec![false; sines.len()];
-        let mut this = Self { parts, sines, ts, delay, now: start, next: f64::INFINITY, on };
+        let mut this = Self {
+            parts,
+            sines,
+            ts,
+            delay,
+            now: start,
+            next: f64::INFINITY,
+            level_until: f64::NEG_INFINITY,
+            on,
+        };
         this.find_next(f64::NEG_INFINITY);
         this
     }
@@ -213,6 +224,8 @@ impl Curve {
             }
         }
         self.next = next;
+        let level = self.now.slope == 0.0 && self.sines.is_empty();
+        self.level_until = if level { next } else { f64::NEG_INFINITY };
     }
 
     /// Value \[u\] and slope \[u/s\] of the present straight piece at the instant `s`, in samples, without the sines.
@@ -242,10 +255,7 @@ impl Curve {
     /// Value at the instant `s`, in samples, sines included, going forward to the piece that holds then.
     #[inline]
     pub(super) fn advance_to(&mut self, s: f64) -> f64 {
-        if self.next > s + SAME && self.now.slope == 0.0 && self.sines.is_empty() {
-            return self.now.value;
-        }
-        self.go_to(s)
+        if self.level_until > s + SAME { self.now.value } else { self.go_to(s) }
     }
 
     #[inline(never)]

@@ -27,6 +27,7 @@ impl Measuring {
         if self.ideal { y } else { self.show_real(y) }
     }
 
+    #[inline(never)]
     fn show_real(&mut self, y: f64) -> f64 {
         let noisy = match &mut self.noise {
             Some((std, source)) => y + *std * source.sample(),
