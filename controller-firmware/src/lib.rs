@@ -1,0 +1,11 @@
+//! What the images share.
+//!
+//! Built for a microcontroller, this is the start-up, the end and the console of an image on an emulated board; built
+//! for a laptop it is what both can run, so that their results can be compared.
+#![no_std]
+
+#[cfg(target_os = "none")]
+pub mod image;
+
+/// The name of the board this was built for.
+pub const BOARD: &str = env!("CONTROLLER_BOARD");
