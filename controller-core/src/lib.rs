@@ -46,6 +46,7 @@ pub mod controller;
 mod deadband;
 mod delay;
 mod error;
+mod fingerprint;
 mod instance;
 mod lag;
 mod limit;
@@ -73,6 +74,7 @@ pub use controller::{Controller, ControllerConfig, ControllerInput, ControllerOu
 pub use deadband::Deadband;
 pub use delay::{DelayLine, Memory};
 pub use error::{ConfigError, ConfigErrors, MAX_FAULTS, Param, Reason};
+pub use fingerprint::Fingerprint;
 pub use instance::{Instance, Law};
 pub use lag::{Lag, LagTap};
 pub use limit::{Limit, LimitConfig, Limited};
