@@ -6,6 +6,7 @@ mod assess;
 mod design;
 mod examples;
 mod execute;
+mod export;
 mod gallery;
 mod identify;
 mod input;
@@ -105,6 +106,7 @@ pub fn main() -> ExitCode {
         Some(Command::Design(arguments)) => design::run(&arguments, json, &command),
         Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),
         Some(Command::Identify(arguments)) => identify::run(&arguments, json, &command),
+        Some(Command::Export(arguments)) => export::run(&arguments, json),
         Some(Command::Reproduce(arguments)) => reproduce::run(&arguments, json),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),

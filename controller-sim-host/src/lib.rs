@@ -30,6 +30,7 @@ pub mod analysis;
 pub mod cli;
 pub mod demo;
 pub mod design_file;
+pub mod export;
 pub mod log;
 pub mod output;
 pub mod plant;

@@ -37,6 +37,8 @@ pub(super) enum Command {
     Analyze(super::analyze::AnalyzeArguments),
     /// Judges from a recorded experiment whether a PI loop is tuned for loads
     Assess(super::assess::AssessArguments),
+    /// Writes a designed loop for the target: Rust constants
+    Export(super::export::ExportArguments),
     /// Computes the tables of the papers again: printed, true, ours, verdict
     Reproduce(ReproduceArguments),
     /// Prints the completions for a shell

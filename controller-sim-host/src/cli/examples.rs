@@ -7,6 +7,7 @@ Examples:
   controller-sim run my.toml                     run a scenario and compare its controllers
   controller-sim run my.toml --report my.html    with plots, as a page for the browser
   controller-sim analyze my.toml                 margins and noise of its loops
+  controller-sim export loop.toml --format rust  a loop for the target
   controller-sim demo --list                     everything that is built in
   controller-sim identify step.csv               a model from a recorded step
 
@@ -43,6 +44,15 @@ Examples:
   controller-sim demo --save                        write the first one to demo.toml, or demo-2.toml, ...
 
 A name that several names begin with runs all of them in order: `windup` all of `windup-...`.";
+
+pub(super) const EXPORT: &str = "\
+Examples:
+  controller-sim export loop.toml --format rust                         to the screen
+  controller-sim export loop.toml --format rust --save src/loop_law.rs
+  controller-sim export my.toml --controller 'PI + DOB' --format rust --capacity 64
+
+The law is built in the target's number type before a line is written. The Rust module checks when it is compiled that
+nobody changed a number since.";
 
 pub(super) const DESIGN: &str = "\
 Examples:

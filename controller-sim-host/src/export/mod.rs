@@ -1,0 +1,102 @@
+//! A designed loop as a file for the target.
+//!
+//! What is exported has passed every check of the law that will run: it is built here, in the number type of the target,
+//! before a line of it is written.
+
+mod rust;
+
+use crate::scenario::{ControllerSpec, Scenario};
+use crate::simulate::{AnyLaw, Precision};
+use controller_core::{AnyCompensator, CompensatorConfig, ConfigErrors};
+
+/// In what the loop is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// A Rust module of constants for `controller-core`.
+    Rust,
+}
+
+/// What the target's file is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct Export<'a> {
+    scenario: &'a Scenario,
+    spec: &'a ControllerSpec,
+    precision: Precision,
+    capacity: usize,
+}
+
+/// Why a loop cannot be exported.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refused {
+    /// Two loops, one inside the other: each is a file of its own.
+    Cascade,
+    /// The target's number type cannot hold the law, or the delay memory is too small.
+    Faults(ConfigErrors),
+}
+
+impl<'a> Export<'a> {
+    /// The loop of `spec`, which is of `scenario`, in the target's number type; `capacity` samples of delay memory, as
+    /// many as it needs if `None`.
+    ///
+    /// # Errors
+    /// When the loop is a cascade; every fault of the law.
+    pub fn new(
+        scenario: &'a Scenario,
+        spec: &'a ControllerSpec,
+        precision: Precision,
+        capacity: Option<usize>,
+    ) -> Result<Self, Refused> {
+        if spec.secondary.is_some() {
+            return Err(Refused::Cascade);
+        }
+        let (ts, latency) = (scenario.ts, scenario.latency);
+        let needed = spec
+            .compensator_config(latency)
+            .map_or(0, |config| AnyCompensator::<f64, Vec<f64>>::needed_capacity(&config, ts).max(2));
+        let capacity = capacity.unwrap_or(needed);
+        let built = match precision {
+            Precision::F32 => AnyLaw::<f32>::new(spec, ts, latency, capacity).err(),
+            Precision::F64 => AnyLaw::<f64>::new(spec, ts, latency, capacity).err(),
+        };
+        match built {
+            Some(faults) => Err(Refused::Faults(faults)),
+            None => Ok(Self { scenario, spec, precision, capacity }),
+        }
+    }
+
+    /// The file; `origin` is the file it comes from, for its head.
+    #[must_use]
+    pub fn text(&self, format: Format, origin: &str) -> String {
+        match format {
+            Format::Rust => rust::text(self, origin),
+        }
+    }
+
+    /// The controller's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.spec.name.trim()
+    }
+
+    /// The target's number type.
+    #[must_use]
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// Sampling period \[s\].
+    #[must_use]
+    pub fn ts(&self) -> f64 {
+        self.scenario.ts
+    }
+
+    /// Samples of delay memory; 0 without a compensator.
+    #[must_use]
+    pub fn capacity(&self) -> usize {
+        self.capacity
+    }
+
+    fn compensator(&self) -> Option<CompensatorConfig> {
+        self.spec.compensator_config(self.scenario.latency)
+    }
+}
