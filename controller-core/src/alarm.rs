@@ -7,6 +7,7 @@ use crate::status::Status;
 
 /// Alarm levels \[y\]; `None`: no such alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AlarmConfig {
     /// Measurement very high.
     pub hi_hi: Option<f64>,

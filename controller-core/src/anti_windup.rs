@@ -6,6 +6,7 @@ use crate::real::{Real, coefficient};
 
 /// The anti-windup rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum AntiWindupConfig {
     /// `I += min(1, ts/tt)*(a - v)` with the applied output `a` and the wanted `v` (offset and estimator
     /// included). `tt` \[s\], above 0; `None`: `max(kp/ki, tf, ts)`.

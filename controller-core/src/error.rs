@@ -22,6 +22,13 @@ macro_rules! params {
                 match self { $(Self::$name => $text,)* }
             }
         }
+
+        #[cfg(feature = "defmt")]
+        impl defmt::Format for Param {
+            fn format(&self, f: defmt::Formatter<'_>) {
+                match self { $(Self::$name => defmt::write!(f, $text),)* }
+            }
+        }
     };
 }
 
@@ -132,6 +139,7 @@ params! {
 
 /// Why a value is refused. The numbers are stable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 #[repr(u8)]
 pub enum Reason {
@@ -208,6 +216,16 @@ impl fmt::Display for ConfigError {
 
 impl core::error::Error for ConfigError {}
 
+#[cfg(feature = "defmt")]
+impl defmt::Format for ConfigError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{} = {}: {}", self.param, self.value, self.reason);
+        if self.min < self.max {
+            defmt::write!(f, " (allowed: {} to {})", self.min, self.max);
+        }
+    }
+}
+
 /// All faults of a configuration, in the order they were found; at most [`MAX_FAULTS`] are kept.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ConfigErrors {
@@ -260,6 +278,13 @@ impl fmt::Display for ConfigErrors {
 }
 
 impl core::error::Error for ConfigErrors {}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for ConfigErrors {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", self.as_slice());
+    }
+}
 
 /// Collects faults while a configuration is read.
 #[derive(Debug, Default)]

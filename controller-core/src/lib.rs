@@ -35,6 +35,11 @@
 //! let out = law.step(&mut state, &ControllerInput { r: 1.0, y: 0.0, ..ControllerInput::default() });
 //! assert!(out.u.is_finite());
 //! ```
+//!
+//! # Features
+//!
+//! None is on by itself. `defmt`: what a firmware logs implements `defmt::Format`, sent as numbers and decoded on the host;
+//! a [`Status`] shows the names of its bits.
 #![no_std]
 
 mod accumulator;
@@ -60,6 +65,7 @@ mod sample;
 mod setpoint;
 pub mod snapshot;
 mod status;
+mod trace;
 
 pub use accumulator::Accumulator;
 pub use adrc::{Adrc, AdrcCoefficients, AdrcConfig, AdrcInput, AdrcOutput, AdrcState};
@@ -90,3 +96,4 @@ pub use sample::{
 pub use setpoint::{Setpoint, SetpointConfig};
 pub use snapshot::SnapshotError;
 pub use status::Status;
+pub use trace::{Trace, TraceSample};

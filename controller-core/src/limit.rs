@@ -9,6 +9,7 @@ pub(crate) const RANGE_LIMIT: f64 = 1e12;
 
 /// Range and rate of an output. Bounds up to 1e12 in size, rates above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LimitConfig {
     /// Lowest output \[u\]; default -1e6.
     pub lo: f64,
@@ -73,6 +74,7 @@ pub struct Limit<T> {
 
 /// A limited output and which limit was active.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limited<T> {
     /// The output \[u\].
     pub u: T,

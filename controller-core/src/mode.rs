@@ -24,6 +24,7 @@
 /// assert!(Mode::Cascade.is_automatic());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
     /// Out of service.

@@ -22,6 +22,7 @@ pub const MAX_FACTORS: usize = MAX_ORDER + 1;
 /// assert_eq!(Factor::second(1.2, 0.2).order(), 2);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Factor {
     /// Coefficient of `s` \[s\].
     pub a1: f64,
@@ -61,6 +62,7 @@ impl Factor {
 /// assert_eq!(tank.order(), 1);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PlantModel {
     /// Static gain `K` (gain of the rate for an integrating plant); not zero.
     pub gain: f64,

@@ -6,6 +6,7 @@ use crate::real::{Real, coefficient};
 
 /// How good the sender says a measurement is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Quality {
     /// Use it.
@@ -19,6 +20,7 @@ pub enum Quality {
 
 /// What the output does when the measurement has been bad for longer than `hold_samples`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum FallbackAction {
     /// Stays where it is.
     #[default]
@@ -50,6 +52,7 @@ impl FallbackAction {
 
 /// When a loop closes again after a fallback.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum FallbackReturn {
     /// With the first good measurement.
     #[default]
@@ -60,6 +63,7 @@ pub enum FallbackReturn {
 
 /// The policy for bad measurements.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FallbackConfig {
     /// Bad samples in a row for which output and terms are simply held; default 25. While it may last, holding costs far
     /// less than settling anew (a few per cent of IAE against tens in the middle of a transient); held too long, the jump
@@ -96,6 +100,7 @@ impl FallbackConfig {
 
 /// What a loop may do with the measurement of this sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Verdict {
     /// Use it.
     Use,

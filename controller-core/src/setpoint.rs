@@ -7,6 +7,7 @@ use crate::real::{Real, coefficient};
 
 /// Range and rate of a set-point. Bounds up to 1e12 in size, rates above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SetpointConfig {
     /// Lowest set-point \[y\]; default -1e6.
     pub lo: f64,

@@ -17,6 +17,7 @@ pub(crate) const FRAME: usize = 3;
 
 /// Why a snapshot was not written or not read. The numbers are stable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 #[repr(u8)]
 pub enum SnapshotError {

@@ -21,6 +21,22 @@ macro_rules! bits {
             /// Every bit with its name.
             pub const NAMES: &'static [(Self, &'static str)] = &[$((Self::$name, $text)),*];
         }
+
+        /// The names of the bits that are set, in brackets.
+        #[cfg(feature = "defmt")]
+        impl defmt::Format for Status {
+            fn format(&self, f: defmt::Formatter<'_>) {
+                let mut first = true;
+                defmt::write!(f, "[");
+                $(if self.has(Self::$name) {
+                    if !core::mem::replace(&mut first, false) {
+                        defmt::write!(f, ", ");
+                    }
+                    defmt::write!(f, $text);
+                })*
+                defmt::write!(f, "]");
+            }
+        }
     };
 }
 

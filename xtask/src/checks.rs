@@ -17,6 +17,10 @@ const ALLOWED: [&str; 7] = [
     "stable_deref_trait",
 ];
 
+/// What the core's optional features add to what is flashed: `defmt`, and what it brings. The crates of its macros run in the
+/// compiler and are none of the core's.
+const OPTIONAL: [&str; 2] = ["defmt", "bitflags"];
+
 /// A source file has fewer lines than this: one that grows further wants to be several.
 const MAX_LINES: usize = 600;
 
@@ -30,20 +34,24 @@ const UNFINISHED: [&str; 4] =
 /// Folders that exist on one machine only.
 const MACHINE_PATHS: [&str; 3] = [concat!("/ro", "ot/"), concat!("/ho", "me/"), concat!("/Us", "ers/")];
 
-/// Checks the output of `cargo tree --prefix none` against the allow-list; gives the number of different crates.
-pub(crate) fn allowed_dependencies(tree: &str) -> Outcome<usize> {
+/// Checks the output of `cargo tree --prefix none` against the allow-list, with the additions of the optional features or
+/// without; gives the number of different crates.
+pub(crate) fn allowed_dependencies(tree: &str, optional: bool) -> Outcome<usize> {
+    let additions: &[&str] = if optional { &OPTIONAL } else { &[] };
     let mut found: Vec<&str> = tree.lines().filter_map(|line| line.split_whitespace().next()).collect();
     found.sort_unstable();
     found.dedup();
     if found.is_empty() {
         return Err("cargo tree printed nothing".into());
     }
-    let intruders: Vec<&str> = found.iter().copied().filter(|name| !ALLOWED.contains(name)).collect();
+    let intruders: Vec<&str> =
+        found.iter().copied().filter(|name| !ALLOWED.contains(name) && !additions.contains(name)).collect();
     if intruders.is_empty() {
         Ok(found.len())
     } else {
         Err(format!(
-            "not allowed below controller-core: {} (see ALLOWED in xtask/src/checks.rs)",
+            "not allowed below controller-core{}: {} (see ALLOWED in xtask/src/checks.rs)",
+            if optional { " with all features" } else { "" },
             intruders.join(", ")
         ))
     }
@@ -193,15 +201,19 @@ mod tests {
     fn allowed_trees_pass() {
         let tree = "controller-core v0.1.0 (/somewhere/controller-core)\ncritical-section v1.2.0\nheapless v0.9.3\n\
                     hash32 v0.3.1\nbyteorder v1.5.0\nstable_deref_trait v1.2.1\nlibm v0.2.16\nlibm v0.2.16 (*)\n";
-        assert_eq!(allowed_dependencies(tree), Ok(7));
+        assert_eq!(allowed_dependencies(tree, false), Ok(7));
+        // What a feature adds is allowed with the features only.
+        let more = format!("{tree}defmt v1.2.0\nbitflags v1.3.2\n");
+        assert_eq!(allowed_dependencies(&more, true), Ok(9));
+        assert!(allowed_dependencies(&more, false).unwrap_err().contains("controller-core: bitflags, defmt"));
     }
 
     #[test]
     fn an_intruder_is_named() {
         let tree = "controller-core v0.1.0\nlibm v0.2.16\nserde v1.0.229\nlibm-extra v1.0.0\n";
-        let message = allowed_dependencies(tree).unwrap_err();
+        let message = allowed_dependencies(tree, true).unwrap_err();
         assert!(message.contains("libm-extra, serde"), "{message}");
-        assert!(allowed_dependencies("").is_err());
+        assert!(allowed_dependencies("", false).is_err());
     }
 
     #[test]

@@ -12,6 +12,7 @@ const SIZE: (f64, f64) = (1e-15, 1e15);
 /// Six numbers; [`from_bandwidths`](Self::from_bandwidths) makes them of three. There is no default: an ADRC that knows
 /// no `b0` cannot act.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AdrcConfig {
     /// Input gain of the model `y'' = b0*(u + d)` [y/u/s²], any sign, size 1e-15 to 1e15.
     pub b0: f64,

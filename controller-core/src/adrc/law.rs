@@ -87,6 +87,7 @@ pub struct AdrcState<T> {
 
 /// What an [`Adrc`] reads in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AdrcInput<T> {
     /// Set-point \[y\].
     pub r: T,
@@ -98,6 +99,7 @@ pub struct AdrcInput<T> {
 
 /// What an [`Adrc`] gives in one sample \[u\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AdrcOutput<T> {
     /// Feedback of the estimated `y` and `y'`.
     pub pd: T,

@@ -8,6 +8,7 @@ use crate::real::Real;
 /// The disturbance estimator (DE) of Vrančić & Huba 2021, eq. (13): model `gain*exp(-s*dead_time)/(1+a1*s+a2*s^2)`,
 /// filter `kfd/(1+s*tfd)^3`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EstimatorConfig {
     /// Static gain `K_PRM` of the model [y/u], not 0.
     pub gain: f64,
@@ -40,6 +41,7 @@ impl EstimatorConfig {
 
 /// The disturbance observer (DOB) of Tena et al. 2022, eqs (26), (27): the plant's model and one time constant.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ObserverConfig {
     /// Model of the plant.
     pub model: PlantModel,
@@ -66,6 +68,7 @@ impl ObserverConfig {
 
 /// Under which names the filter's parameters were written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum FilterNames {
     /// `kfd`, `tfd`.
     Estimator,
@@ -76,6 +79,7 @@ pub enum FilterNames {
 
 /// Parameters of any member of the compensator family, SI units.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CompensatorConfig {
     /// Model of the plant: order 1 to 8, stable or integrating, more poles than zeros.
     pub model: PlantModel,

@@ -8,6 +8,7 @@ use crate::snapshot::{Reader, Writer};
 
 /// What a compensator gives in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CompensatorOutput<T> {
     /// What to add to the controller's output \[u\]: `u_f = -gain*d_hat`.
     pub u_f: T,

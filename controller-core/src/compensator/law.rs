@@ -74,6 +74,7 @@ pub struct CompensatorState<T, const N: usize, const E: usize, const R: usize> {
 
 /// What a compensator reads in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CompensatorInput<T> {
     /// Measurement `y[k]` \[y\].
     pub y: T,

@@ -12,6 +12,7 @@ use crate::setpoint::SetpointConfig;
 /// Every range is finite: bounds up to 1e12 in size, the lower below the upper; `off_output` and a fallback's output lie
 /// within `limits`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ControllerConfig {
     /// The PID.
     pub pid: PidConfig,

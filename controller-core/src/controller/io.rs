@@ -9,6 +9,7 @@ use crate::status::Status;
 ///
 /// Any bit pattern is allowed in any number; the comments say what happens to an unusable one.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ControllerInput<T> {
     /// Local set-point \[y\]; clamped to its range, the last good one if not finite.
     pub r: T,
@@ -61,6 +62,7 @@ impl<T: Real> Default for ControllerInput<T> {
 
 /// What a [`Controller`](crate::Controller) gives in one sample. Every number is finite, `u` is in its range.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ControllerOutput<T> {
     /// Output, limited \[u\].
     pub u: T,

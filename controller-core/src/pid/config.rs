@@ -12,6 +12,7 @@ const TIME_LIMIT: f64 = 1e12;
 
 /// Which way the output moves when the measurement rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Action {
     /// PV rises, output falls: the gains are used as they are written (heating, most flow and pressure loops).
     #[default]
@@ -22,6 +23,7 @@ pub enum Action {
 
 /// How the integral term is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum IntegralRule {
     /// `I[k] = I[k-1] + ki*ts*e[k]` (Tena et al. 2022, the discrete form under eq. (10)).
     #[default]
@@ -39,6 +41,7 @@ pub enum IntegralRule {
 /// [`from_proportional_band`](Self::from_proportional_band),
 /// [`from_repeats_per_minute`](Self::from_repeats_per_minute).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PidConfig {
     /// Proportional gain [u/y], any sign, size up to 1e15.
     pub kp: f64,

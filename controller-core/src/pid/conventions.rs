@@ -11,6 +11,7 @@ use crate::error::{Checker, ConfigErrors, Param};
 /// assert_eq!(span.ratio(), 0.5);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Span {
     /// Measurement at 0 % \[y\].
     pub pv_lo: f64,

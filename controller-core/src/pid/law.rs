@@ -70,6 +70,7 @@ pub struct PidState<T> {
 
 /// What a [`Pid`] reads in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PidInput<T> {
     /// Set-point \[y\].
     pub r: T,
@@ -79,6 +80,7 @@ pub struct PidInput<T> {
 
 /// What a [`Pid`] gives in one sample \[u\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PidOutput<T> {
     /// Integral term.
     pub i: T,
