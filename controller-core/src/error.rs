@@ -135,6 +135,32 @@ params! {
     Beta2 = 50, "adrc.beta2";
     /// Observer gain of an ADRC into the disturbance.
     Beta3 = 51, "adrc.beta3";
+
+    // From 64 on: sensors, actuators and signal blocks of `controller-hal`.
+    /// Counts of a converter at the ends of a span.
+    Counts = 64, "counts";
+    /// Counts between which a sensor is in order.
+    GoodCounts = 65, "good";
+    /// Counts between which a sensor may still be used.
+    UsableCounts = 66, "usable";
+    /// Output that an actuator goes to when it is given none.
+    SafeOutput = 67, "safe";
+    /// Window of a time-proportioned output.
+    Window = 68, "window";
+    /// Shortest time for which a time-proportioned output is on.
+    MinimumOn = 69, "minimum_on";
+    /// Shortest time for which a time-proportioned output is off.
+    MinimumOff = 70, "minimum_off";
+    /// Flow signal: full scale of the flow.
+    FlowFull = 71, "flow";
+    /// Flow signal: where the root becomes a line.
+    LinearBelow = 72, "linear_below";
+    /// Flow signal: below this there is no flow.
+    CutOff = 73, "cut_off";
+    /// Schedule: an operating point.
+    OperatingPoint = 74, "operating point";
+    /// Schedule: hysteresis.
+    Hysteresis = 75, "hysteresis";
 }
 
 /// Why a value is refused. The numbers are stable.
