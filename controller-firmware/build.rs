@@ -27,6 +27,7 @@ fn main() {
     };
     assert_eq!(board.target, target, "the board {} needs --target {}", board.name, board.target);
     println!("cargo:rustc-env=CONTROLLER_BOARD={}", board.name);
+    println!("cargo:rustc-env=CONTROLLER_CLOCK={}", board.clock);
     let numbers = [
         ("board_flash", board.flash.origin),
         ("board_flash_size", board.flash.length),

@@ -2,7 +2,9 @@
 //!
 //! Every way out ends the emulator with an exit code: a run never hangs, and a script sees what happened.
 
+use core::cell::Cell;
 use cortex_m_rt::{ExceptionFrame, exception};
+use critical_section::Mutex;
 pub use semihosting::{print, println};
 
 /// Exit code after a panic, as programs on a host have it.
@@ -17,6 +19,18 @@ core::arch::global_asm!(
     ".popsection"
 );
 
+static MAKE_SAFE: Mutex<Cell<fn()>> = Mutex::new(Cell::new(|| ()));
+
+/// What to do after a fault or a panic before anything else: the outputs go to where they do no harm.
+pub fn on_fault(make_safe: fn()) {
+    critical_section::with(|cs| MAKE_SAFE.borrow(cs).set(make_safe));
+}
+
+fn make_safe() {
+    let act = critical_section::with(|cs| MAKE_SAFE.borrow(cs).get());
+    act();
+}
+
 /// Ends the image.
 pub fn exit(code: i32) -> ! {
     semihosting::process::exit(code)
@@ -24,18 +38,21 @@ pub fn exit(code: i32) -> ! {
 
 #[panic_handler]
 fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+    make_safe();
     println!("{info}");
     exit(PANICKED)
 }
 
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    make_safe();
     println!("hard fault at {:#010x}, called from {:#010x}", frame.pc(), frame.lr());
     exit(FAULTED)
 }
 
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
+    make_safe();
     println!("interrupt {number} without a handler");
     exit(FAULTED)
 }

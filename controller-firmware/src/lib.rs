@@ -9,3 +9,10 @@ pub mod image;
 
 /// The name of the board this was built for.
 pub const BOARD: &str = env!("CONTROLLER_BOARD");
+
+/// Clock of the board's system timer \[Hz\].
+#[cfg(target_os = "none")]
+pub const CLOCK: u32 = match u32::from_str_radix(env!("CONTROLLER_CLOCK"), 10) {
+    Ok(hertz) => hertz,
+    Err(_) => panic!("the build script gives a whole number"),
+};

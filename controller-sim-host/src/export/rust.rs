@@ -226,7 +226,7 @@ impl Module {
     fn types(&mut self, real: &str, compensator: &str, law: Option<&str>) {
         let law = law.map_or(String::new(), |law| format!(", {law}<{real}>"));
         self.line(&format!("\n/// The law: built once, never changed.\npub type Law = Controller<{real}, {compensator}{law}>;"));
-        self.line("\n/// Its state: `LAW.zeroed()` settles itself on the first good sample.");
+        self.line("\n/// Its state: `law.zeroed()` settles itself on the first good sample.");
         let state = match (compensator, law.is_empty()) {
             ("NoCompensator", true) => format!("ControllerState<{real}, ()>"),
             ("NoCompensator", false) => {
