@@ -6,6 +6,8 @@
 
 #[cfg(target_os = "none")]
 pub mod image;
+#[cfg(target_os = "none")]
+pub mod stack;
 
 /// The name of the board this was built for.
 pub const BOARD: &str = env!("CONTROLLER_BOARD");

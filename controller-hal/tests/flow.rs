@@ -52,6 +52,16 @@ fn the_measurement_sees_a_worse_root() {
     assert!(found > 1.7e-3 && found < 1.8e-3, "{found:e}");
 }
 
+/// The bits do not depend on the processor: the same number stands in the tests on the target.
+#[test]
+fn the_root_has_the_bits_of_the_target() {
+    let mut hash = 0x811C_9DC5_u32;
+    for k in 0_u32..4000 {
+        hash = (hash ^ fast_sqrt(f32::from_bits(0x3580_0000 + k * 0x4021)).to_bits()).wrapping_mul(0x0100_0193);
+    }
+    assert_eq!(hash, 0xC99B_0D1D, "{hash:#010x}");
+}
+
 #[test]
 fn the_root_of_anything_is_a_number() {
     for bits in (0..u32::MAX).step_by(4093).chain([0x7F80_0000, 0xFF80_0000, 0x7FC0_0000, u32::MAX]) {
