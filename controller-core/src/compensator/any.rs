@@ -4,6 +4,7 @@ use super::MAX_EXCESS;
 use super::config::CompensatorConfig;
 use super::discretise::{Discretised, discretise};
 use super::kernel::{Coefficients, Compensate, CompensatorOutput, Sealed};
+use super::shape::list_of;
 use super::view::{LagsView, StateRef, StateView};
 use crate::delay::{DelayLine, Memory};
 use crate::error::{Checker, ConfigErrors, Param, Reason};
@@ -73,14 +74,14 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
         config.validate(ts, capacity)?;
         let Discretised { g, y_feed, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
             discretise::<T>(config, ts);
-        let rounded = |list: Vec<f64, MAX_ORDER>| list.iter().map(|&x| coefficient(x)).collect();
+        let rounded = |list: Vec<f64, MAX_ORDER>| list_of(list.iter().map(|&x| coefficient(x)));
         let law = Self {
             g: rounded(g),
             y_feed: rounded(y_feed),
             y_lead: rounded(y_lead),
             y_dc: rounded(y_dc),
             u_lead: rounded(u_lead),
-            e_gain: e_gain.iter().map(|&x| coefficient(x)).collect(),
+            e_gain: list_of(e_gain.iter().map(|&x| coefficient(x))),
             inv_gain: coefficient(inv_gain),
             gain: coefficient(gain),
             delay,
@@ -104,9 +105,9 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
         }
         let zero = Lag::settled(T::ZERO);
         check.finish(AnyCompensatorState {
-            y: core::iter::repeat_n(zero, self.g.len()).collect(),
-            u: core::iter::repeat_n(zero, self.g.len()).collect(),
-            e: core::iter::repeat_n(zero, self.e_gain.len()).collect(),
+            y: list_of(core::iter::repeat_n(zero, self.g.len())),
+            u: list_of(core::iter::repeat_n(zero, self.g.len())),
+            e: list_of(core::iter::repeat_n(zero, self.e_gain.len())),
             reference: T::ZERO,
             line: DelayLine::new(memory),
         })
@@ -130,9 +131,9 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     fn reshape(&self, state: &mut AnyCompensatorState<T, M>) {
         let zero = Lag::settled(T::ZERO);
         if state.y.len() != self.g.len() || state.e.len() != self.e_gain.len() {
-            state.y = core::iter::repeat_n(zero, self.g.len()).collect();
+            state.y = list_of(core::iter::repeat_n(zero, self.g.len()));
             state.u = state.y.clone();
-            state.e = core::iter::repeat_n(zero, self.e_gain.len()).collect();
+            state.e = list_of(core::iter::repeat_n(zero, self.e_gain.len()));
         }
     }
 

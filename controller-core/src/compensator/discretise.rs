@@ -2,7 +2,7 @@
 
 use super::MAX_EXCESS;
 use super::config::CompensatorConfig;
-use super::shape::{least_order, moved_zeros, nearness, whole_samples};
+use super::shape::{least_order, list_of, moved_zeros, nearness, sort_by_number, whole_samples};
 use super::zoh::{Pole, numerator, times_linear};
 use crate::plant_model::{MAX_ORDER, PlantModel};
 use crate::real::Real;
@@ -52,7 +52,7 @@ pub(super) fn split_poles(model: &PlantModel, ts: f64) -> (Vec<Pole, MAX_ORDER>,
         }
     }
     // Fast before slow, as the lags, so that slow poles meet slow lags; integrators come last.
-    real.sort_unstable_by(|a, b| rate(*b).partial_cmp(&rate(*a)).unwrap_or(core::cmp::Ordering::Equal));
+    sort_by_number(&mut real, |&pole| -rate(pole));
     (real, pairs)
 }
 
@@ -80,8 +80,8 @@ pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discre
     // behind a slow one would need weights of the size of their ratio to show through it.
     let mut taus = moved_zeros(model, ts);
     while taus.len() < n && taus.push(config.time_constant).is_ok() {}
-    taus.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
-    let g: Vec<f64, MAX_ORDER> = taus.iter().map(|&tau| lag_gain(tau)).collect();
+    sort_by_number(&mut taus, |&tau| tau);
+    let g: Vec<f64, MAX_ORDER> = list_of(taus.iter().map(|&tau| lag_gain(tau)));
 
     // Sections of the y path: real poles two by two, then the pairs, a single real pole last.
     let single = if n & 1 == 1 { real.pop() } else { None };
@@ -118,7 +118,7 @@ pub(super) fn discretise<T: Real>(config: &CompensatorConfig, ts: f64) -> Discre
         y_feed,
         y_lead,
         y_dc,
-        e_gain: core::iter::repeat_n(alpha_gain, excess).collect(),
+        e_gain: list_of(core::iter::repeat_n(alpha_gain, excess)),
         inv_gain: 1.0 / model.gain,
         gain: config.gain,
         delay,
