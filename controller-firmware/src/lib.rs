@@ -8,6 +8,7 @@
 pub mod image;
 #[cfg(target_os = "none")]
 pub mod stack;
+pub mod trace;
 
 /// The name of the board this was built for.
 pub const BOARD: &str = env!("CONTROLLER_BOARD");
