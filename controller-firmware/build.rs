@@ -8,7 +8,11 @@ use controller_pil::board;
 /// The images that log through defmt, which needs a linker script of its own.
 const LOGGING: [&str; 1] = ["demo"];
 
+/// With less flash \[bytes\] than this, images leave out what is large.
+const SMALL: u32 = 1 << 20;
+
 fn main() {
+    println!("cargo:rustc-check-cfg=cfg(small_flash)");
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=../memory.x");
     println!("cargo:rerun-if-env-changed=CONTROLLER_BOARD");
@@ -28,6 +32,9 @@ fn main() {
     assert_eq!(board.target, target, "the board {} needs --target {}", board.name, board.target);
     println!("cargo:rustc-env=CONTROLLER_BOARD={}", board.name);
     println!("cargo:rustc-env=CONTROLLER_CLOCK={}", board.clock);
+    if board.flash.length < SMALL {
+        println!("cargo:rustc-cfg=small_flash");
+    }
     let numbers = [
         ("board_flash", board.flash.origin),
         ("board_flash_size", board.flash.length),

@@ -8,7 +8,13 @@
 pub mod image;
 #[cfg(target_os = "none")]
 pub mod stack;
+pub mod swap;
+#[cfg(all(target_os = "none", feature = "timed-lock"))]
+pub mod timed_lock;
 pub mod trace;
+
+#[cfg(all(target_os = "none", feature = "timed-lock", feature = "single-core"))]
+compile_error!("there can be one critical section: timed-lock needs --no-default-features");
 
 /// The name of the board this was built for.
 pub const BOARD: &str = env!("CONTROLLER_BOARD");

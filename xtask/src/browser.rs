@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::packages;
 use crate::shell::{Cmd, Outcome, target_dir};
 
 /// The folder with the checks, below the workspace root.
@@ -40,7 +41,7 @@ pub(crate) fn ready(root: &Path) -> Outcome<Result<Tools, String>> {
     let Some(chromium) = chromium() else {
         return Ok(Err("Chromium was installed but is not found; name it in CHROMIUM".into()));
     };
-    Ok(packages(root)?.map(|modules| Tools { chromium, modules }))
+    Ok(modules(root)?.map(|modules| Tools { chromium, modules }))
 }
 
 /// Installs the programs that are missing; gives the message when it cannot.
@@ -49,33 +50,11 @@ fn install_programs(root: &Path) -> Option<String> {
     if lacking.is_empty() {
         return None;
     }
-    let names = lacking.join(" ");
-    if Cmd::new("apt-get", root).arg("--version").probe().is_none() {
+    if !packages::can_install(root) {
+        let names = lacking.join(" ");
         return Some(format!("missing: {names}; install Chromium (or name it in CHROMIUM), Node and npm"));
     }
-    let by_hand = format!("missing: {names}; run: sudo apt-get install -y {names}");
-    let Some(prefix) = superuser(root) else {
-        return Some(by_hand);
-    };
-    let apt = |words: &[&str]| {
-        let mut line: Vec<&str> = prefix.to_vec();
-        // Set here and not for the command: sudo hands no variable on.
-        line.extend(["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"]);
-        line.extend(words);
-        Cmd::new(line[0], root).args(&line[1..]).run()
-    };
-    let mut install = vec!["install", "-y", "--no-install-recommends"];
-    install.extend(&lacking);
-    // The list of packages of a fresh system is empty, that of an old one leads to files that are gone.
-    let done = apt(&["update"]).and_then(|()| apt(&install));
-    match done {
-        Ok(()) if lacking_programs(root).is_empty() => None,
-        Ok(()) => Some(by_hand),
-        Err(message) => {
-            println!("{message}");
-            Some(by_hand)
-        }
-    }
+    packages::install(root, &lacking, || lacking_programs(root).is_empty())
 }
 
 /// The packages of Debian for the programs that are not there.
@@ -92,17 +71,6 @@ fn lacking_programs(root: &Path) -> Vec<&'static str> {
         lacking.push("npm");
     }
     lacking
-}
-
-/// The words before a command that only the superuser may run; nothing when this person may not, or not unasked.
-fn superuser(root: &Path) -> Option<&'static [&'static str]> {
-    if Cmd::new("id", root).arg("-u").probe().is_some_and(|id| id.trim() == "0") {
-        Some(&[])
-    } else if Cmd::new("sudo", root).args(["-n", "true"]).probe().is_some() {
-        Some(&["sudo", "-n"])
-    } else {
-        None
-    }
 }
 
 /// The browser: named in CHROMIUM, or found on the path.
@@ -123,7 +91,7 @@ fn is_recent_node(answer: &str) -> bool {
 
 /// Installs the packages below the target folder, when the lock file is not that of the last time; gives the folder,
 /// or what to do.
-fn packages(root: &Path) -> Outcome<Result<PathBuf, String>> {
+fn modules(root: &Path) -> Outcome<Result<PathBuf, String>> {
     let folder = target_dir(root).join("browser");
     let io = |what: &Path, error: std::io::Error| format!("cannot write {}: {error}", what.display());
     std::fs::create_dir_all(&folder).map_err(|e| io(&folder, e))?;
@@ -183,7 +151,7 @@ mod tests {
     fn missing_checks_are_an_error_and_not_a_lack() {
         let root = std::env::temp_dir().join(format!("controller-xtask-no-checks-{}", std::process::id()));
         std::fs::create_dir_all(&root).unwrap();
-        let message = packages(&root);
+        let message = modules(&root);
         std::fs::remove_dir_all(&root).unwrap();
         assert!(message.unwrap_err().contains("package-lock.json"));
     }

@@ -7,6 +7,9 @@
 //! |---|---|
 //! | [`setup`] | components and targets of the pinned toolchain, the tools for fuzzing |
 //! | [`browser`] | the browser, Node and packages that the checks of the report pages run with |
+//! | [`emulator`] | building images for boards, running them on emulated ones |
+//! | [`packages`] | packages of the system |
+//! | [`same_bits`], [`no_panic`], [`swap`] | rungs on and for microcontrollers |
 //! | [`ladder`] | running the rungs in order, timing them, the summary |
 //! | [`rungs`] | what each rung of the ladder does |
 //! | [`report`] | the rung that opens the program's pages in a browser |
@@ -22,15 +25,20 @@
 mod bench;
 mod browser;
 mod checks;
+mod emulator;
 mod fuzz;
 mod ladder;
 mod long_runs;
 mod manifest;
 mod memory;
+mod no_panic;
+mod packages;
 mod report;
 mod rungs;
+mod same_bits;
 mod setup;
 mod shell;
+mod swap;
 mod usage;
 
 use std::path::Path;
@@ -57,7 +65,7 @@ struct Command {
 const COMMANDS: [Command; 7] = [
     Command {
         name: "setup",
-        about: "add what the toolchain lacks, and the browser for the reports",
+        about: "add what the toolchain lacks, the emulator, the browser for the reports",
         options: &[("--fuzz", "cargo-fuzz as well (needs a C++ compiler)")],
     },
     Command {
@@ -71,7 +79,7 @@ const COMMANDS: [Command; 7] = [
     },
     Command {
         name: "soak",
-        about: "the long runs: tests with SOAK=1, 1e8 samples, fuzzing",
+        about: "the long runs: tests with SOAK=1, images, 1e8 samples, fuzzing",
         options: &[("--minutes N", "fuzz for N minutes in all (default 30; 0: not at all)")],
     },
     Command {
@@ -136,6 +144,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
         }
         Request::Setup { fuzz } => {
             let mut lacking = setup::toolchain(root)?;
+            lacking.extend(emulator::ready(root));
             lacking.extend(browser::ready(root)?.err());
             if fuzz {
                 lacking.extend(setup::fuzzing(root).err());
@@ -162,6 +171,8 @@ fn perform(request: Request, root: &Path) -> Outcome {
 fn soak(root: &Path, minutes: u64) -> Outcome {
     // Tests that have a long form read SOAK; without it they do their bounded share.
     Cmd::cargo(root).env("SOAK", "1").args(["test", "--release", "-p", "controller-tests"]).run()?;
+    same_bits::soak(root)?;
+    swap::soak(root)?;
     let program = rungs::program(root)?;
     memory::soak(&program, &rungs::TempFolder::new("soak")?.0)?;
     if minutes == 0 {

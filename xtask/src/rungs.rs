@@ -3,15 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use crate::checks;
+use crate::emulator;
 use crate::fuzz;
 use crate::ladder::{Done, Rung};
 use crate::manifest::Manifest;
+use crate::no_panic;
 use crate::report;
+use crate::same_bits;
 use crate::setup::{self, Part, Toolchain};
 use crate::shell::{Cmd, Outcome, in_ci, target_dir};
+use crate::swap;
 
 /// All rungs, in order.
-pub(crate) const RUNGS: [Rung; 12] = [
+pub(crate) const RUNGS: [Rung; 15] = [
     Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
     Rung { name: "format", about: "sources are formatted", run: format },
     Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
@@ -23,7 +27,18 @@ pub(crate) const RUNGS: [Rung; 12] = [
         run: targets,
     },
     Rung { name: "dependencies", about: "the core depends only on what is allowed", run: dependencies },
-    Rung { name: "same-bits", about: "the same bits at every optimisation level", run: same_bits },
+    Rung {
+        name: "no-panic",
+        about: "the image links that cannot panic, its broken twin does not",
+        run: no_panic::rung,
+    },
+    Rung {
+        name: "same-bits",
+        about: "the same bits at every optimisation level and on every board",
+        run: same_bits::rung,
+    },
+    Rung { name: "on-target", about: "the tests that run on the microcontroller", run: emulator::on_target },
+    Rung { name: "swap", about: "laws replaced under an interrupt: whole, without a bump", run: swap::rung },
     Rung { name: "demo", about: "the program without arguments runs its scenario", run: demo },
     Rung { name: "report", about: "pages are accessible, offline, legible, small", run: report::rung },
     Rung { name: "fuzz", about: "a bounded run of every fuzz target", run: fuzz_rung },
@@ -31,7 +46,7 @@ pub(crate) const RUNGS: [Rung; 12] = [
 ];
 
 /// The crate that is flashed.
-const CORE: &str = "controller-core";
+pub(crate) const CORE: &str = "controller-core";
 
 /// The crate whose closed forms a target can tune itself with.
 const DESIGN: &str = "controller-design";
@@ -44,37 +59,6 @@ const PROGRAM: &str = "controller-sim";
 
 /// What the demo must show.
 const DEMO_NAMES: [&str; 3] = ["MOMI", "DRMO", "DE-MOMI"];
-
-/// The example that prints one hash per trace.
-const TRACE_EXAMPLE: &str = "controller-core/examples/trace_hash.rs";
-
-/// A way to build the trace example.
-struct Variant {
-    /// Name in messages, and of the folder it is built in.
-    name: &'static str,
-    /// What is different from the plain build.
-    args: &'static [&'static str],
-    /// A flag for the compiler, or none; one word, see [`same_bits`].
-    rustflag: &'static str,
-}
-
-/// The builds whose traces must agree. No debug information: nobody debugs them and they build faster.
-const VARIANTS: [Variant; 5] = [
-    Variant { name: "opt-0", args: &["--config=profile.dev.opt-level=0", NO_DEBUG], rustflag: "" },
-    Variant { name: "opt-1", args: &["--config=profile.dev.opt-level=1", NO_DEBUG], rustflag: "" },
-    Variant { name: "opt-3", args: &["--config=profile.dev.opt-level=3", NO_DEBUG], rustflag: "" },
-    // All instructions of this machine, fused multiply-add among them: the compiler must not use it on its own.
-    Variant {
-        name: "native",
-        args: &["--config=profile.dev.opt-level=3", NO_DEBUG],
-        rustflag: "-Ctarget-cpu=native",
-    },
-    // The profile that is shipped: optimised across crates, overflow checks off.
-    Variant { name: "release", args: &["--release"], rustflag: "" },
-];
-
-/// See [`VARIANTS`].
-const NO_DEBUG: &str = "--config=profile.dev.debug=false";
 
 fn set_up(root: &Path) -> Outcome<Done> {
     let lacking = setup::toolchain(root)?;
@@ -142,6 +126,7 @@ fn targets(root: &Path) -> Outcome<Done> {
 }
 
 /// The arguments that choose features: the default set, each feature alone, all together, and none at all if that differs.
+/// The arguments that choose features: the default set, none at all if that differs, each feature alone, all together.
 fn feature_forms(manifest: &Manifest) -> Vec<Vec<String>> {
     let mut forms = vec![Vec::new()];
     if let Some(features) = manifest.table("features") {
@@ -149,8 +134,11 @@ fn feature_forms(manifest: &Manifest) -> Vec<Vec<String>> {
             forms.push(vec!["--no-default-features".into()]);
         }
         // `std` cannot build where there is none.
-        for feature in features.keys().filter(|key| !["default", "std"].contains(key)) {
-            forms.push(vec!["--no-default-features".into(), "--features".into(), feature.into()]);
+        let each: Vec<&str> = features.keys().filter(|key| !["default", "std"].contains(key)).collect();
+        let with = |list: &str| vec!["--no-default-features".into(), "--features".into(), list.into()];
+        forms.extend(each.iter().map(|feature| with(feature)));
+        if each.len() > 1 {
+            forms.push(with(&each.join(",")));
         }
     }
     forms
@@ -167,29 +155,6 @@ fn dependencies(root: &Path) -> Outcome<Done> {
     };
     let (plain, all) = (count(&[])?, count(&["--all-features"])?);
     Ok(Done::Passed(format!("{plain} crates, all allowed; {all} with all features")))
-}
-
-fn same_bits(root: &Path) -> Outcome<Done> {
-    if !root.join(TRACE_EXAMPLE).is_file() {
-        return Err(format!(
-            "{TRACE_EXAMPLE} is missing: without it nobody knows whether the bits are the same"
-        ));
-    }
-    let mut outputs = Vec::new();
-    for variant in &VARIANTS {
-        // A folder of its own for each: a binary left by another variant must never be run by mistake.
-        let folder = target_dir(root).join("same-bits").join(variant.name);
-        let cmd = Cmd::cargo(root)
-            // Always set, if only to nothing: of all the places flags can come from, this one shuts out the others, so
-            // that no flag of the caller makes two variants the same build. Words in it are not parted by blanks.
-            .env("CARGO_ENCODED_RUSTFLAGS", variant.rustflag)
-            .args(["run", "-p", "controller-core", "--example", "trace_hash", "--target-dir"])
-            .arg(folder)
-            .args(variant.args);
-        outputs.push((variant.name, cmd.capture()?));
-    }
-    let lines = checks::same_output(&outputs)?;
-    Ok(Done::Passed(format!("{lines} traces equal in {} builds", outputs.len())))
 }
 
 /// Builds the program as it is shipped; gives its path. It is built in the workspace and started anywhere: outside of
@@ -257,32 +222,19 @@ mod tests {
     }
 
     #[test]
-    fn each_feature_is_built_alone_but_std() {
+    fn each_feature_is_built_alone_and_all_together_but_std() {
         let manifest =
             Manifest::parse("[features]\ndefault = [\"trace\"]\nstd = []\ntrace = []\ndefmt = []\n");
         let forms: Vec<String> = feature_forms(&manifest).iter().map(|form| form.join(" ")).collect();
         let alone = |feature: &str| format!("--no-default-features --features {feature}");
-        let expected = [String::new(), "--no-default-features".into(), alone("trace"), alone("defmt")];
+        let none = "--no-default-features".into();
+        let expected = [String::new(), none, alone("trace"), alone("defmt"), alone("trace,defmt")];
         assert_eq!(forms, expected);
-    }
-
-    #[test]
-    fn variants_have_folders_of_their_own() {
-        let mut names: Vec<_> = VARIANTS.iter().map(|variant| variant.name).collect();
-        names.sort_unstable();
-        names.dedup();
-        assert_eq!(names.len(), VARIANTS.len());
-    }
-
-    #[test]
-    fn flags_of_variants_are_one_word() {
-        assert!(VARIANTS.iter().all(|variant| !variant.rustflag.contains(char::is_whitespace)));
     }
 
     #[test]
     fn missing_parts_of_the_product_fail_their_rungs() {
         let nowhere = Path::new("no-such-folder");
-        assert!(same_bits(nowhere).unwrap_err().contains(TRACE_EXAMPLE));
         assert!(fuzz_rung(nowhere).unwrap_err().contains("fuzz/Cargo.toml"));
     }
 

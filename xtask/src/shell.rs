@@ -70,6 +70,14 @@ impl Cmd {
         }
     }
 
+    /// Prints the command and runs it, whatever comes of it: whether it succeeded, and all it printed.
+    pub(crate) fn attempt(&self) -> Outcome<(bool, String)> {
+        println!("  $ {self}");
+        let output = self.command().output().map_err(|e| self.not_started(&e))?;
+        let text = [output.stdout, output.stderr].concat();
+        Ok((output.status.success(), String::from_utf8_lossy(&text).into_owned()))
+    }
+
     /// Asks a question quietly: the output when the command succeeds, else nothing.
     pub(crate) fn probe(&self) -> Option<String> {
         let output = self.command().output().ok()?;

@@ -11,7 +11,9 @@ mod laws;
 mod run;
 
 use controller_core::plant_model::PlantModel;
-use controller_core::{AnyCompensator, Compensator, Controller, Real};
+use controller_core::{
+    AnyCompensator, Compensate, Compensator, CompensatorConfig, Controller, NoCompensator, Real,
+};
 use core::fmt;
 use hash::Hash;
 use laws::{config, estimator, fifth_order, observer, period, third_order};
@@ -19,6 +21,9 @@ use run::trace;
 
 /// Delay memory \[samples\].
 const CAPACITY: usize = 40;
+
+/// Whether the loops in double precision are there: without a unit for it they fill the flash of a small board.
+const DOUBLE: bool = cfg!(not(small_flash));
 
 /// The number types to run the loops in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,13 +37,13 @@ pub enum Types {
 }
 
 impl Types {
-    /// By its name on a command line: `f32`, `f64` or `both`.
+    /// By its name on a command line: `f32`, `f64` or `both`; `None` where a type is left out.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "f32" => Some(Self::F32),
-            "f64" => Some(Self::F64),
-            "both" => Some(Self::Both),
+            "f64" if DOUBLE => Some(Self::F64),
+            "both" if DOUBLE => Some(Self::Both),
             _ => None,
         }
     }
@@ -55,7 +60,7 @@ pub struct Request {
 
 impl Default for Request {
     fn default() -> Self {
-        Self { samples: 10_000, types: Types::Both }
+        Self { samples: 10_000, types: if DOUBLE { Types::Both } else { Types::F32 } }
     }
 }
 
@@ -108,7 +113,7 @@ pub fn run(request: Request, mut print: impl FnMut(Line)) {
     if request.types != Types::F64 {
         loops::<f32>(request.samples, &mut each);
     }
-    if request.types != Types::F32 {
+    if DOUBLE && request.types != Types::F32 {
         loops::<f64>(request.samples, &mut each);
     }
     print(Line { name: "all", samples: request.samples, bits: None, hash: all.value() });
@@ -126,11 +131,12 @@ fn loops<T: Real>(samples: u32, print: &mut impl FnMut(Line)) {
     line("any-order-5-integrating", any::<T>(samples));
 }
 
-// One function for each, so that a small target needs stack for one at a time.
+// One function for each loop, and for each step of building a law: building takes most of the stack of a small target,
+// which then has to hold one of them at a time.
 
 #[inline(never)]
 fn pid<T: Real>(samples: u32) -> u64 {
-    trace(samples, (), |i| Controller::<T>::new(&config(i), period(i)).ok())
+    trace(samples, (), |i| around::<T, _>(i, NoCompensator))
 }
 
 #[inline(never)]
@@ -142,43 +148,46 @@ fn adrc<T: Real>(samples: u32) -> u64 {
 
 #[inline(never)]
 fn pid_de<T: Real>(samples: u32) -> u64 {
-    trace(samples, Default::default(), |i| {
-        let law = Compensator::<T, 2, 1, CAPACITY>::new(&estimator(i, 0.2), period(i)).ok()?;
-        Controller::with_compensator(&config(i), law, period(i)).ok()
-    })
+    trace(samples, Default::default(), |i| around(i, compensator::<T, 2, 1>(i, &estimator(i, 0.2))?))
 }
 
 #[inline(never)]
 fn pid_de_first_order<T: Real>(samples: u32) -> u64 {
-    trace(samples, Default::default(), |i| {
-        let law = Compensator::<T, 1, 2, CAPACITY>::new(&estimator(i, 0.0), period(i)).ok()?;
-        Controller::with_compensator(&config(i), law, period(i)).ok()
-    })
+    trace(samples, Default::default(), |i| around(i, compensator::<T, 1, 2>(i, &estimator(i, 0.0))?))
 }
 
 #[inline(never)]
 fn pi_dob<T: Real>(samples: u32) -> u64 {
-    trace(samples, Default::default(), |i| {
-        let model = PlantModel::first_order(1.0, 1.2, 0.0);
-        let law = Compensator::<T, 1, 0, CAPACITY>::new(&observer(i, model, None), period(i)).ok()?;
-        Controller::with_compensator(&config(i), law, period(i)).ok()
-    })
+    let model = || PlantModel::first_order(1.0, 1.2, 0.0);
+    trace(samples, Default::default(), |i| around(i, compensator::<T, 1, 0>(i, &observer(i, model(), None))?))
 }
 
 #[inline(never)]
 fn dob_third_order<T: Real>(samples: u32) -> u64 {
-    trace(samples, Default::default(), |i| {
-        let law = Compensator::<T, 3, 0, CAPACITY>::new(&observer(i, third_order(), None), period(i)).ok()?;
-        Controller::with_compensator(&config(i), law, period(i)).ok()
-    })
+    let config = |i| observer(i, third_order(), None);
+    trace(samples, Default::default(), |i| around(i, compensator::<T, 3, 0>(i, &config(i))?))
 }
 
 #[inline(never)]
 fn any<T: Real>(samples: u32) -> u64 {
-    let law = |i: usize| {
-        AnyCompensator::<T, [T; CAPACITY]>::new(&observer(i, fifth_order(), Some(7)), period(i), CAPACITY)
-            .ok()
-    };
-    let blank = law(0).and_then(|law| law.state([T::ZERO; CAPACITY]).ok()).expect("the delay fits");
-    trace(samples, blank, |i| Controller::with_compensator(&config(i), law(i)?, period(i)).ok())
+    let blank = any_compensator::<T>(0).and_then(|law| law.state([T::ZERO; CAPACITY]).ok());
+    trace(samples, blank.expect("the delay fits"), |i| around(i, any_compensator::<T>(i)?))
+}
+
+#[inline(never)]
+fn any_compensator<T: Real>(i: usize) -> Option<AnyCompensator<T, [T; CAPACITY]>> {
+    AnyCompensator::new(&observer(i, fifth_order(), Some(7)), period(i), CAPACITY).ok()
+}
+
+#[inline(never)]
+fn compensator<T: Real, const N: usize, const E: usize>(
+    i: usize,
+    config: &CompensatorConfig,
+) -> Option<Compensator<T, N, E, CAPACITY>> {
+    Compensator::new(config, period(i)).ok()
+}
+
+#[inline(never)]
+fn around<T: Real, C: Compensate<T>>(i: usize, compensator: C) -> Option<Controller<T, C>> {
+    Controller::with_compensator(&config(i), compensator, period(i)).ok()
 }

@@ -85,7 +85,12 @@ pub(super) fn trace<T: Real, C: Compensate<T>, L: Regulator<T>>(
     blank: C::State,
     law: impl Fn(usize) -> Option<Controller<T, C, L>>,
 ) -> u64 {
-    let laws: [_; LAWS] = core::array::from_fn(|i| law(i).expect("a valid loop"));
+    // One after the other into their places: there is stack for one besides them.
+    let mut laws = [const { None }; LAWS];
+    for (i, place) in laws.iter_mut().enumerate() {
+        *place = law(i);
+    }
+    let law = |i: usize| laws[i].as_ref().expect("a valid loop");
     let mut state = ControllerState::over(blank);
     let mut around = Surroundings::new();
     let mut plant = Plant::new();
@@ -97,16 +102,16 @@ pub(super) fn trace<T: Real, C: Compensate<T>, L: Regulator<T>>(
         let chance = &mut around.chance;
         if chance.once_in(1500) {
             let next = chance.below(LAWS as u32) as usize;
-            laws[next].adopt(&laws[now], &mut state);
+            law(next).adopt(law(now), &mut state);
             now = next;
         }
         if chance.once_in(1200) {
-            laws[now].advance(&mut state, 1 + chance.below(30));
+            law(now).advance(&mut state, 1 + chance.below(30));
         }
         if chance.once_in(2500) {
-            save_and_restore(&laws[now], &mut state, &mut hash);
+            save_and_restore(law(now), &mut state, &mut hash);
         }
-        let out = laws[now].step(&mut state, &around.input);
+        let out = law(now).step(&mut state, &around.input);
         add(&mut hash, &out);
         y = plant.step(out.u + around.load);
     }
