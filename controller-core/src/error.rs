@@ -351,9 +351,10 @@ impl Checker {
         both
     }
 
-    /// Takes over the faults of a part.
-    pub(crate) fn merge<V>(&mut self, part: Result<V, ConfigErrors>) -> Option<V> {
-        match part {
+    /// Builds a part; takes over its faults. A list of faults is large: on the stack there is one of a part at a time.
+    #[inline(never)]
+    pub(crate) fn merge<V>(&mut self, part: impl FnOnce() -> Result<V, ConfigErrors>) -> Option<V> {
+        match part() {
             Ok(value) => Some(value),
             Err(errors) => {
                 for fault in &errors.faults {

@@ -136,6 +136,29 @@ impl CompensatorConfig {
         check.into_result()
     }
 
+    /// As [`validate`](Self::validate), for a law with so many poles and so many excess filter poles. A function of its
+    /// own for the sake of the stack: lists of faults are large, and what follows is deep.
+    #[inline(never)]
+    pub(super) fn validate_for(
+        &self,
+        ts: f64,
+        capacity: usize,
+        (poles, excess): (usize, usize),
+    ) -> Result<(), ConfigErrors> {
+        self.validate(ts, capacity)?;
+        let mut check = Checker::default();
+        let needs = super::discretise::shape(self, ts);
+        for (param, needs, has) in
+            [(Param::ModelOrder, needs.0, poles), (Param::FilterOrder, needs.1, excess)]
+        {
+            if needs != has {
+                let [needs, has] = [needs, has].map(index_to_f64);
+                check.fault(param, Reason::Mismatch, needs, has, has);
+            }
+        }
+        check.into_result()
+    }
+
     fn check_model(&self, check: &mut Checker, ts: f64) {
         let model = &self.model;
         if check.range(Param::ModelGain, model.gain, -1e15, 1e15) && model.gain.abs() < 1e-15 {

@@ -140,6 +140,7 @@ impl<T: Real> Coefficients<'_, T> {
     }
 
     /// Refuses coefficients that do not fit the number type.
+    #[inline(never)]
     pub(super) fn check(&self) -> Result<(), ConfigErrors> {
         let mut check = Checker::default();
         if !self.is_finite() {

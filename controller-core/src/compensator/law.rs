@@ -2,11 +2,11 @@
 
 use super::MAX_EXCESS;
 use super::config::{CompensatorConfig, EstimatorConfig, ObserverConfig};
-use super::discretise::{Discretised, discretise, shape};
+use super::discretise::{Discretised, discretise};
 use super::kernel::{Coefficients, Compensate, CompensatorOutput, Sealed};
 use super::view::{LagsView, StateRef, StateView};
 use crate::delay::DelayLine;
-use crate::error::{Checker, ConfigErrors, Param, Reason};
+use crate::error::ConfigErrors;
 use crate::lag::Lag;
 use crate::plant_model::MAX_ORDER;
 use crate::real::{Real, coefficient};
@@ -115,17 +115,7 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensator<T, N, 
             assert!(E <= MAX_EXCESS, "a compensator has at most 3 excess sections");
             assert!(R >= 1, "a delay line has at least one sample");
         }
-        config.validate(ts, R)?;
-        let (order, excess) = shape(config, ts);
-        let mut check = Checker::default();
-        let as_f64 = super::config::index_to_f64;
-        if order != N {
-            check.fault(Param::ModelOrder, Reason::Mismatch, as_f64(order), as_f64(N), as_f64(N));
-        }
-        if excess != E {
-            check.fault(Param::FilterOrder, Reason::Mismatch, as_f64(excess), as_f64(E), as_f64(E));
-        }
-        check.into_result()?;
+        config.validate_for(ts, R, (N, E))?;
         let Discretised { g, y_feed, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
             discretise::<T>(config, ts);
         let law = Self {

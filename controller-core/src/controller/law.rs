@@ -77,7 +77,7 @@ impl<T: Real, C: Compensate<T>> Controller<T, C> {
         ts: f64,
     ) -> Result<Self, ConfigErrors> {
         let mut check = Checker::default();
-        let pid = check.merge(Pid::new(&config.pid, ts));
+        let pid = check.merge(|| Pid::new(&config.pid, ts));
         let [kp, ki, _] = config.pid.signed_gains();
         let reversed = ki < 0.0 || (ki == 0.0 && kp < 0.0);
         Self::compose(check, config, pid, reversed, compensator, ts)
@@ -116,7 +116,7 @@ impl<T: Real> Controller<T, NoCompensator, Adrc<T>> {
     /// ```
     pub fn with_adrc(config: &ControllerConfig, adrc: &AdrcConfig, ts: f64) -> Result<Self, ConfigErrors> {
         let mut check = Checker::default();
-        let law = check.merge(Adrc::new(adrc, ts));
+        let law = check.merge(|| Adrc::new(adrc, ts));
         let pid = &config.pid;
         for (param, gain) in [(Param::Kp, pid.kp), (Param::Ki, pid.ki), (Param::Kd, pid.kd)] {
             check.range(param, gain, 0.0, 0.0);
@@ -143,13 +143,13 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         compensator: C,
         ts: f64,
     ) -> Result<Self, ConfigErrors> {
-        let limit = check.merge(Limit::new(&config.limits, ts));
-        let setpoint = check.merge(Setpoint::new(&config.setpoint, ts));
-        let anti_windup = check.merge(AntiWindup::new(&config.anti_windup, &config.pid, ts));
-        let deadband = check.merge(Deadband::new(config.deadband));
-        let guard =
-            check.merge(SampleGuard::new(&config.fallback, config.measurement_lo, config.measurement_hi, ts));
-        let alarms = check.merge(Alarms::new(&config.alarms));
+        let limit = check.merge(|| Limit::new(&config.limits, ts));
+        let setpoint = check.merge(|| Setpoint::new(&config.setpoint, ts));
+        let anti_windup = check.merge(|| AntiWindup::new(&config.anti_windup, &config.pid, ts));
+        let deadband = check.merge(|| Deadband::new(config.deadband));
+        let guard = check
+            .merge(|| SampleGuard::new(&config.fallback, config.measurement_lo, config.measurement_hi, ts));
+        let alarms = check.merge(|| Alarms::new(&config.alarms));
         let offsets = ((Param::OffsetLo, config.offset_lo), (Param::OffsetHi, config.offset_hi));
         check.bounds(offsets.0, offsets.1, RANGE_LIMIT);
         let (lo, hi) = (config.limits.lo, config.limits.hi);
