@@ -1,0 +1,111 @@
+//! The instruction meter: see [`clock`] for how it counts, [`report`] for what it prints.
+
+mod blocks;
+mod clock;
+mod laws;
+mod loops;
+mod range;
+mod report;
+mod signals;
+
+use blocks::{Limiting, LimitingState, TS, compensate};
+use clock::Clock;
+use controller_core::{
+    Adrc, AdrcInput, Compensator, CompensatorInput, ConfigErrors, Controller, Law, Pid, PidInput, PidState,
+    Real,
+};
+use laws::Bare;
+
+/// The board this was built for.
+fn board() -> &'static str {
+    controller_firmware::BOARD
+}
+
+/// Why nothing was measured.
+pub(crate) enum Failure {
+    /// The timer does not count instructions.
+    NotCounting,
+    /// A block could not be built.
+    Config(ConfigErrors),
+}
+
+impl From<ConfigErrors> for Failure {
+    fn from(errors: ConfigErrors) -> Self {
+        Self::Config(errors)
+    }
+}
+
+/// Measures everything.
+pub(crate) fn run(timer: cortex_m::peripheral::SYST) -> Result<(), Failure> {
+    let clock = Clock::start(timer).ok_or(Failure::NotCounting)?;
+    all::<f32>(&clock)?;
+    all::<f64>(&clock)?;
+    Ok(())
+}
+
+fn all<T: Real>(clock: &Clock) -> Result<(), ConfigErrors> {
+    pids::<T>(clock)?;
+    compensator::<T, 2, 1>(clock, "de-2", blocks::second_order)?;
+    compensator::<T, 1, 2>(clock, "de-1", blocks::first_order)?;
+    compensator::<T, 1, 0>(clock, "dob-1", blocks::observer)?;
+    compensator::<T, 3, 0>(clock, "dob-3", blocks::third_order)?;
+    adrc::<T>(clock)?;
+    loops::measure(clock, "loop-pid", |form| Controller::<T>::new(&blocks::pid_loop(form), TS))?;
+    loops::measure(clock, "loop-pid-de", blocks::estimator_loop::<T>)?;
+    loops::measure(clock, "loop-pi-dob", blocks::observer_loop::<T>)?;
+    loops::measure(clock, "loop-adrc", blocks::adrc_loop::<T>)
+}
+
+#[inline(never)]
+fn pids<T: Real>(clock: &Clock) -> Result<(), ConfigErrors> {
+    let pid = Bare {
+        name: "pid",
+        config: blocks::pid,
+        new: |config| Pid::<T>::new(config, TS),
+        rest: |_| PidState::default(),
+        step: Pid::run,
+        adopt: |law, state, old| law.adopt(old, state),
+    };
+    pid.measure(clock, |r, y, _| PidInput { r, y })?;
+    let limiting = Bare {
+        name: "pid-limit",
+        config: |retuned| retuned,
+        new: |retuned| Limiting::<T>::new(*retuned),
+        rest: |_| LimitingState::new(),
+        step: Limiting::run,
+        adopt: |law, state, old| law.take_over(old, state),
+    };
+    limiting.measure(clock, |r, y, _| PidInput { r, y })
+}
+
+#[inline(never)]
+fn compensator<T: Real, const N: usize, const E: usize>(
+    clock: &Clock,
+    name: &'static str,
+    config: fn(bool) -> controller_core::CompensatorConfig,
+) -> Result<(), ConfigErrors> {
+    let block = Bare {
+        name,
+        config,
+        new: |config| Compensator::<T, N, E, { blocks::LINE }>::new(config, TS),
+        rest: |law| law.settled(T::ZERO, T::ZERO),
+        step: compensate,
+        adopt: |law, state, old| {
+            let _ = controller_core::Compensate::adopt(law, old, state, T::ZERO, T::ZERO);
+        },
+    };
+    block.measure(clock, |_, y, u_applied| CompensatorInput { y, u_applied })
+}
+
+#[inline(never)]
+fn adrc<T: Real>(clock: &Clock) -> Result<(), ConfigErrors> {
+    let block = Bare {
+        name: "adrc",
+        config: blocks::adrc,
+        new: |config| Adrc::<T>::new(config, TS),
+        rest: |_| controller_core::AdrcState::default(),
+        step: Adrc::run,
+        adopt: |law, state, old| law.adopt(old, state),
+    };
+    block.measure(clock, |r, y, u| AdrcInput { r, y, u })
+}
