@@ -146,6 +146,7 @@ where
     C::State: Default,
 {
     /// A loop at rest.
+    #[inline(never)]
     fn new(law: &'a Controller<T, C, L>) -> Self {
         let mut run = Self { law, state: law.zeroed(), y: T::ZERO };
         law.settle(&mut run.state, T::ZERO, T::ZERO, T::ZERO);
@@ -153,11 +154,14 @@ where
     }
 
     /// One sample, which counts for `class`; the plant follows the output.
+    #[inline(never)]
     fn sample(&mut self, counts: &mut Counts<'_>, class: Class, input: &ControllerInput<T>) {
         let out = self.one(counts, class, input);
         self.y = self.y + T::from_f64(0.05) * (out.u - self.y);
     }
 
+    /// One sample, which counts for `class`.
+    #[inline(never)]
     fn one(
         &mut self,
         counts: &mut Counts<'_>,
@@ -175,6 +179,7 @@ where
     }
 
     /// An input in automatic mode.
+    #[inline(never)]
     fn input(&self, r: f64) -> ControllerInput<T> {
         ControllerInput { r: T::from_f64(r), y: self.y, ..ControllerInput::default() }
     }

@@ -6,7 +6,7 @@
 //! bytes BLOCK TYPE LAW STATE                what an instance takes
 //! ```
 //!
-//! WHAT is `step`, `adopt` or `new`. Words given to the image choose blocks by the beginning of their name, and a type.
+//! WHAT is `step`, `adopt` or `new`. A word given to the image chooses the blocks whose names begin with it.
 
 use super::clock::Clock;
 use super::range::Range;
@@ -21,11 +21,10 @@ pub(super) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// `None` when the image was started with words and none of them is the block or the type.
+    /// `None` when the image was started with words that are not the beginning of the block's name.
     pub(super) fn new<T: Real>(clock: &'a Clock, block: &'static str) -> Option<Self> {
         let number = if T::WORDS == 1 { "f32" } else { "f64" };
-        let wanted = |words: &[&str]| words.iter().all(|word| block.starts_with(word) || *word == number);
-        asked(wanted).then_some(Self { clock, block, number })
+        asked(block).then_some(Self { clock, block, number })
     }
 
     /// A range of instructions; nothing if nothing was counted.
@@ -48,15 +47,10 @@ impl<'a> Report<'a> {
     }
 }
 
-/// What `wanted` says of the words that the image was started with, at most eight.
-fn asked(wanted: impl Fn(&[&str]) -> bool) -> bool {
+/// Whether the image was started with no word, or with one that `block` begins with.
+fn asked(block: &str) -> bool {
     let Ok(all) = semihosting::experimental::env::args::<256>() else { return true };
-    let mut words = [""; 8];
-    let mut count = 0;
     // The first one is the image.
-    for (place, word) in words.iter_mut().zip((&all).skip(1)) {
-        *place = word.unwrap_or_default();
-        count += 1;
-    }
-    wanted(words.get(..count).unwrap_or_default())
+    let mut words = (&all).skip(1).map(Result::unwrap_or_default).peekable();
+    words.peek().is_none() || words.any(|word| block.starts_with(word))
 }

@@ -1,9 +1,9 @@
-//! The instruction meter; on a laptop an empty program.
+//! The instruction meter for `f32`; on a laptop an empty program. An image for each type: the smallest board holds one.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    println!("meter: runs on an emulated microcontroller: cargo xtask size");
+    println!("meter-f32: runs on an emulated microcontroller: cargo xtask size");
 }
 
 #[cfg(target_os = "none")]
@@ -15,10 +15,10 @@ mod meter;
 fn main() -> ! {
     use controller_firmware::image::{exit, println};
     let Some(peripherals) = cortex_m::Peripherals::take() else { exit(1) };
-    match meter::run(peripherals.SYST) {
+    match meter::run::<f32>(peripherals.SYST) {
         Ok(()) => exit(0),
         Err(meter::Failure::NotCounting) => println!("the timer does not count instructions"),
-        Err(meter::Failure::Config(errors)) => println!("{errors}"),
+        Err(meter::Failure::Config(faults)) => println!("a block has {faults} faults"),
     }
     exit(1)
 }
