@@ -1,0 +1,24 @@
+//! The instruction meter for `f64`; on a laptop an empty program.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    println!("meter-f64: runs on an emulated microcontroller: cargo xtask size");
+}
+
+#[cfg(target_os = "none")]
+#[path = "../meter/mod.rs"]
+mod meter;
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    use controller_firmware::image::{exit, println};
+    let Some(peripherals) = cortex_m::Peripherals::take() else { exit(1) };
+    match meter::run::<f64>(peripherals.SYST) {
+        Ok(()) => exit(0),
+        Err(meter::Failure::NotCounting) => println!("the timer does not count instructions"),
+        Err(meter::Failure::Config(faults)) => println!("a block has {faults} faults"),
+    }
+    exit(1)
+}
