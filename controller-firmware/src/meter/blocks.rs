@@ -2,20 +2,17 @@
 
 use controller_core::plant_model::{Factor, PlantModel};
 use controller_core::{
-    Accumulator, Adrc, AdrcConfig, AlarmConfig, AntiWindup, AntiWindupConfig, Compensator, CompensatorConfig,
-    CompensatorInput, CompensatorOutput, CompensatorState, ConfigErrors, Controller, ControllerConfig,
-    Estimator, EstimatorConfig, FallbackAction, FallbackConfig, FallbackReturn, IntegralRule, Law, Limit,
-    LimitConfig, Limited, NoCompensator, Observer, ObserverConfig, Pid, PidConfig, PidInput, PidState, Real,
+    Accumulator, Adrc, AdrcConfig, AlarmConfig, AntiWindup, AntiWindupConfig, Compensate, Compensator,
+    CompensatorConfig, CompensatorInput, CompensatorOutput, CompensatorState, ConfigErrors, Controller,
+    ControllerConfig, EstimatorConfig, FallbackAction, FallbackConfig, FallbackReturn, IntegralRule, Law,
+    Limit, LimitConfig, Limited, NoCompensator, ObserverConfig, Pid, PidConfig, PidInput, PidState, Real,
     SetpointConfig,
 };
 
 /// Sampling period \[s\].
 pub(super) const TS: f64 = 0.01;
 /// Samples in a delay line; what it costs does not depend on it.
-pub(super) const LINE: usize = 32;
-
-/// The estimator for a model of second order.
-pub(super) type SecondOrder<T> = Estimator<T, LINE>;
+pub(super) const LINE: usize = 24;
 
 /// The gains that go with the estimator, or a retuned set.
 pub(super) fn pid(retuned: bool) -> PidConfig {
@@ -127,32 +124,34 @@ fn around(form: Form) -> ControllerConfig {
     }
 }
 
-/// The configuration of a PID loop.
-pub(super) fn pid_loop(form: Form) -> ControllerConfig {
+/// The configuration of a loop with these gains.
+fn closed(form: Form, pid: PidConfig) -> ControllerConfig {
     let deadband = if matches!(form, Form::Full) { 0.01 } else { 0.0 };
-    ControllerConfig { pid: pid(false), deadband, ..around(form) }
+    ControllerConfig { pid, deadband, ..around(form) }
 }
 
-/// The configuration of a PI loop.
-pub(super) fn pi_loop(form: Form) -> ControllerConfig {
-    ControllerConfig { pid: pi(), ..pid_loop(form) }
+/// A PID loop, with a compensator or without. (A list of errors is large: it goes no further than this.)
+pub(super) fn pid_loop<T: Real, C: Compensate<T> + Copy>(
+    &(form, compensator): &(Form, C),
+    law: &mut Option<Controller<T, C>>,
+) {
+    *law = Controller::with_compensator(&closed(form, pid(false)), compensator, TS).ok();
 }
 
-/// A loop with an estimator.
-pub(super) fn estimator_loop<T: Real>(form: Form) -> Result<Controller<T, SecondOrder<T>>, ConfigErrors> {
-    Controller::with_compensator(&pid_loop(form), SecondOrder::new(&second_order(false), TS)?, TS)
-}
-
-/// A loop with an observer.
-pub(super) fn observer_loop<T: Real>(
-    form: Form,
-) -> Result<Controller<T, Observer<T, 1, LINE>>, ConfigErrors> {
-    Controller::with_compensator(&pi_loop(form), Observer::new(&observer(false), TS)?, TS)
+/// A PI loop with a compensator.
+pub(super) fn pi_loop<T: Real, C: Compensate<T> + Copy>(
+    &(form, compensator): &(Form, C),
+    law: &mut Option<Controller<T, C>>,
+) {
+    *law = Controller::with_compensator(&closed(form, pi()), compensator, TS).ok();
 }
 
 /// A loop with an ADRC.
-pub(super) fn adrc_loop<T: Real>(form: Form) -> Result<Controller<T, NoCompensator, Adrc<T>>, ConfigErrors> {
-    Controller::with_adrc(&around(form), &adrc(false), TS)
+pub(super) fn adrc_loop<T: Real>(
+    &(form, _): &(Form, NoCompensator),
+    law: &mut Option<Controller<T, NoCompensator, Adrc<T>>>,
+) {
+    *law = Controller::with_adrc(&around(form), &adrc(false), TS).ok();
 }
 
 /// A PID with output range and rate and back-calculation, put together from the small blocks: what a loop needs that is

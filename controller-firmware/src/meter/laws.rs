@@ -23,12 +23,8 @@ const SAMPLES: u32 = 200;
 impl<C, L, S: Clone, I, O> Bare<C, L, S, I, O> {
     /// Measures it. `input` makes an input of a set-point, a measurement and an applied output.
     #[inline(never)]
-    pub(super) fn measure<T: Real>(
-        &self,
-        clock: &Clock,
-        input: fn(T, T, T) -> I,
-    ) -> Result<(), ConfigErrors> {
-        let Some(report) = Report::new::<T>(clock, self.name) else { return Ok(()) };
+    pub(super) fn measure<T: Real>(&self, clock: &Clock, input: fn(T, T, T) -> I) -> Option<()> {
+        let Some(report) = Report::new::<T>(clock, self.name) else { return Some(()) };
         report.bytes::<L, S>();
         report.code("step", self.step as usize);
         report.code("adopt", self.adopt as usize);
@@ -62,15 +58,18 @@ impl<C, L, S: Clone, I, O> Bare<C, L, S, I, O> {
         }
         report.count("step", "random", range);
         report.count("adopt", "all", adopt);
-        Ok(())
+        Some(())
     }
 
-    fn build(&self, report: &Report<'_>, config: &C) -> Result<L, ConfigErrors> {
-        let build = |new: &fn(&C) -> Result<L, ConfigErrors>, out: &mut (), config: &C| {
-            let () = out;
-            new(config)
+    /// Builds the law.
+    #[inline(never)]
+    fn build(&self, report: &Report<'_>, config: &C) -> Option<L> {
+        // A list of errors is large: it goes no further than this.
+        let build = |new: &fn(&C) -> Result<L, ConfigErrors>, law: &mut Option<L>, config: &C| {
+            *law = new(config).ok();
         };
-        let (law, count) = report.clock.count(build, &self.new, &mut (), config);
+        let mut law = None;
+        let ((), count) = report.clock.count(build, &self.new, &mut law, config);
         let mut range = Range::NONE;
         range.note(count);
         report.count("new", "all", range);

@@ -7,7 +7,7 @@ use super::report::Report;
 use super::signals::Chance;
 use controller_core::controller::ControllerState;
 use controller_core::{
-    Compensate, ConfigErrors, Controller, ControllerInput, ControllerOutput, Mode, Quality, Real, Regulator,
+    Compensate, Controller, ControllerInput, ControllerOutput, Mode, Quality, Real, Regulator,
 };
 
 /// What the samples of a class have in common.
@@ -65,6 +65,9 @@ const RANDOM: u32 = 1000;
 /// More than may be held.
 const LONG: u32 = 30;
 
+/// Builds a loop around a compensator.
+type New<T, C, L> = fn(&(Form, C), &mut Option<Controller<T, C, L>>);
+
 /// What has been counted for a loop.
 struct Counts<'a> {
     report: &'a Report<'a>,
@@ -93,25 +96,28 @@ fn adopt<T: Real, C: Compensate<T>, L: Regulator<T>>(
 pub(super) fn measure<T: Real, C: Compensate<T>, L: Regulator<T>>(
     clock: &Clock,
     name: &'static str,
-    new: fn(Form) -> Result<Controller<T, C, L>, ConfigErrors>,
-) -> Result<(), ConfigErrors>
+    new: New<T, C, L>,
+    compensator: Option<C>,
+) -> Option<()>
 where
+    C: Copy,
     C::State: Default,
 {
-    let Some(report) = Report::new::<T>(clock, name) else { return Ok(()) };
+    let Some(report) = Report::new::<T>(clock, name) else { return Some(()) };
     report.bytes::<Controller<T, C, L>, ControllerState<T, C::State, L::State>>();
     report.code("step", Controller::<T, C, L>::step as *const () as usize);
     report.code("adopt", adopt::<T, C, L> as *const () as usize);
     report.code("new", new as usize);
     let mut counts = Counts { report: &report, classes: [Range::NONE; CLASSES.len()], adopt: Range::NONE };
     let mut building = Range::NONE;
+    let compensator = compensator?;
     for form in [Form::Plain, Form::Full, Form::Conditional] {
-        let law = build(&report, &mut building, new, form)?;
+        let law = build(&report, &mut building, new, (form, compensator))?;
         let other = match form {
             Form::Plain => Form::Full,
             Form::Full | Form::Conditional => Form::Plain,
         };
-        let other = build(&report, &mut building, new, other)?;
+        let other = build(&report, &mut building, new, (other, compensator))?;
         counts.closed(&law, &other);
         counts.modes(&law);
         counts.without_measurement(&law);
@@ -122,21 +128,21 @@ where
     }
     report.count("adopt", "all", counts.adopt);
     report.count("new", "all", building);
-    Ok(())
+    Some(())
 }
 
+/// Builds a loop.
 #[inline(never)]
-fn build<L>(
+fn build<T: Real, C: Compensate<T>, L: Regulator<T>>(
     report: &Report<'_>,
     range: &mut Range,
-    new: fn(Form) -> Result<L, ConfigErrors>,
-    form: Form,
-) -> Result<L, ConfigErrors> {
-    let build = |new: &fn(Form) -> Result<L, ConfigErrors>, out: &mut (), form: &Form| {
-        let () = out;
-        new(*form)
-    };
-    let (law, count) = report.clock.count(build, &new, &mut (), &form);
+    new: New<T, C, L>,
+    parts: (Form, C),
+) -> Option<Controller<T, C, L>> {
+    let mut law = None;
+    let build =
+        |new: &New<T, C, L>, law: &mut Option<Controller<T, C, L>>, parts: &(Form, C)| new(parts, law);
+    let ((), count) = report.clock.count(build, &new, &mut law, &parts);
     range.note(count);
     law
 }
@@ -187,6 +193,7 @@ where
 
 impl Counts<'_> {
     /// A closed loop: set-points that move, limits on both sides, read-back, offset, inhibition; swaps of the law.
+    #[inline(never)]
     fn closed<T: Real, C: Compensate<T>, L: Regulator<T>>(
         &mut self,
         law: &Controller<T, C, L>,
@@ -221,6 +228,7 @@ impl Counts<'_> {
     }
 
     /// Every change of mode and what follows it.
+    #[inline(never)]
     fn modes<T: Real, C: Compensate<T>, L: Regulator<T>>(&mut self, law: &Controller<T, C, L>)
     where
         C::State: Default,
@@ -244,6 +252,7 @@ impl Counts<'_> {
     }
 
     /// Bad samples, in every mode, and what comes after them; the first sample of all.
+    #[inline(never)]
     fn without_measurement<T: Real, C: Compensate<T>, L: Regulator<T>>(&mut self, law: &Controller<T, C, L>)
     where
         C::State: Default,
@@ -285,6 +294,7 @@ impl Counts<'_> {
     }
 
     /// Any bits in every number, any choice in every other input.
+    #[inline(never)]
     fn random<T: Real, C: Compensate<T>, L: Regulator<T>>(&mut self, law: &Controller<T, C, L>)
     where
         C::State: Default,

@@ -8,11 +8,11 @@ mod range;
 mod report;
 mod signals;
 
-use blocks::{Limiting, LimitingState, TS, compensate};
+use blocks::{LINE, Limiting, LimitingState, TS, compensate};
 use clock::Clock;
 use controller_core::{
-    Adrc, AdrcInput, Compensator, CompensatorInput, ConfigErrors, Controller, Law, Pid, PidInput, PidState,
-    Real,
+    Adrc, AdrcInput, AdrcState, Compensate, Compensator, CompensatorConfig, CompensatorInput, Estimator, Law,
+    NoCompensator, Observer, Pid, PidInput, PidState, Real,
 };
 use laws::Bare;
 
@@ -21,42 +21,33 @@ fn board() -> &'static str {
     controller_firmware::BOARD
 }
 
-/// Why nothing was measured.
-pub(crate) enum Failure {
-    /// The timer does not count instructions.
-    NotCounting,
-    /// A block could not be built, for so many faults.
-    Config(usize),
-}
-
-impl From<ConfigErrors> for Failure {
-    fn from(errors: ConfigErrors) -> Self {
-        Self::Config(errors.iter().count())
-    }
-}
-
-/// Measures everything.
-pub(crate) fn run<T: Real>(timer: cortex_m::peripheral::SYST) -> Result<(), Failure> {
-    let clock = Clock::start(timer).ok_or(Failure::NotCounting)?;
-    all::<T>(&clock)?;
-    Ok(())
-}
-
-fn all<T: Real>(clock: &Clock) -> Result<(), ConfigErrors> {
+/// Measures everything; `None` when the timer does not count instructions or a block could not be built.
+pub(crate) fn run<T: Real>(timer: cortex_m::peripheral::SYST) -> Option<()> {
+    let clock = &Clock::start(timer)?;
     pids::<T>(clock)?;
     compensator::<T, 2, 1>(clock, "de-2", blocks::second_order)?;
     compensator::<T, 1, 2>(clock, "de-1", blocks::first_order)?;
     compensator::<T, 1, 0>(clock, "dob-1", blocks::observer)?;
     compensator::<T, 3, 0>(clock, "dob-3", blocks::third_order)?;
     adrc::<T>(clock)?;
-    loops::measure(clock, "loop-pid", |form| Controller::<T>::new(&blocks::pid_loop(form), TS))?;
-    loops::measure(clock, "loop-pid-de", blocks::estimator_loop::<T>)?;
-    loops::measure(clock, "loop-pi-dob", blocks::observer_loop::<T>)?;
-    loops::measure(clock, "loop-adrc", blocks::adrc_loop::<T>)
+    loops::measure(clock, "loop-pid", blocks::pid_loop::<T, _>, Some(NoCompensator))?;
+    loops::measure(clock, "loop-pid-de", blocks::pid_loop::<T, _>, estimator())?;
+    loops::measure(clock, "loop-pi-dob", blocks::pi_loop::<T, _>, observer())?;
+    loops::measure(clock, "loop-adrc", blocks::adrc_loop::<T>, Some(NoCompensator))
 }
 
 #[inline(never)]
-fn pids<T: Real>(clock: &Clock) -> Result<(), ConfigErrors> {
+fn estimator<T: Real>() -> Option<Estimator<T, LINE>> {
+    Estimator::new(&blocks::second_order(false), TS).ok()
+}
+
+#[inline(never)]
+fn observer<T: Real>() -> Option<Observer<T, 1, LINE>> {
+    Observer::new(&blocks::observer(false), TS).ok()
+}
+
+#[inline(never)]
+fn pids<T: Real>(clock: &Clock) -> Option<()> {
     let pid = Bare {
         name: "pid",
         config: blocks::pid,
@@ -81,28 +72,28 @@ fn pids<T: Real>(clock: &Clock) -> Result<(), ConfigErrors> {
 fn compensator<T: Real, const N: usize, const E: usize>(
     clock: &Clock,
     name: &'static str,
-    config: fn(bool) -> controller_core::CompensatorConfig,
-) -> Result<(), ConfigErrors> {
+    config: fn(bool) -> CompensatorConfig,
+) -> Option<()> {
     let block = Bare {
         name,
         config,
-        new: |config| Compensator::<T, N, E, { blocks::LINE }>::new(config, TS),
+        new: |config| Compensator::<T, N, E, LINE>::new(config, TS),
         rest: |law| law.settled(T::ZERO, T::ZERO),
         step: compensate,
         adopt: |law, state, old| {
-            let _ = controller_core::Compensate::adopt(law, old, state, T::ZERO, T::ZERO);
+            let _ = Compensate::adopt(law, old, state, T::ZERO, T::ZERO);
         },
     };
     block.measure(clock, |_, y, u_applied| CompensatorInput { y, u_applied })
 }
 
 #[inline(never)]
-fn adrc<T: Real>(clock: &Clock) -> Result<(), ConfigErrors> {
+fn adrc<T: Real>(clock: &Clock) -> Option<()> {
     let block = Bare {
         name: "adrc",
         config: blocks::adrc,
         new: |config| Adrc::<T>::new(config, TS),
-        rest: |_| controller_core::AdrcState::default(),
+        rest: |_| AdrcState::default(),
         step: Adrc::run,
         adopt: |law, state, old| law.adopt(old, state),
     };
