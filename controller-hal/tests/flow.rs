@@ -57,7 +57,8 @@ fn the_measurement_sees_a_worse_root() {
 fn the_root_has_the_bits_of_the_target() {
     let mut hash = 0x811C_9DC5_u32;
     for k in 0_u32..4000 {
-        hash = (hash ^ fast_sqrt(f32::from_bits(0x3580_0000 + k * 0x4021)).to_bits()).wrapping_mul(0x0100_0193);
+        hash =
+            (hash ^ fast_sqrt(f32::from_bits(0x3580_0000 + k * 0x4021)).to_bits()).wrapping_mul(0x0100_0193);
     }
     assert_eq!(hash, 0xC99B_0D1D, "{hash:#010x}");
 }
