@@ -170,7 +170,7 @@ fn what_cannot_be_tuned_is_refused() {
         for areas in [lag, Areas::new(lag.values())] {
             let refusal = Momi::new(&areas, tf).unwrap_err();
             assert!(
-                matches!(refusal, Refusal::NoSolution { .. }) && refusal.help().contains("simc"),
+                matches!(refusal, Refusal::NoSolution { .. }) && refusal.help().contains("dead time"),
                 "{refusal}"
             );
         }

@@ -135,7 +135,7 @@ fn steps_of_a_limited_loop_stay_inside() {
 
 #[test]
 fn a_design_file_gives_back_every_number() {
-    let plant = "-1.98000000000001*exp(-3.2*s)/((1+80.3*s)*(1+7*s))";
+    let plant = "-1.98000000000001*exp(-33.2*s)/((1+80.3*s)*(1+7*s))";
     for method in Method::ALL {
         let request = Request { latency: 0.1, ..Request::new(method, 0.3) };
         let Some(made) = made(plant, &request) else { panic!("{}", method.name()) };

@@ -16,6 +16,7 @@
 //! | [`memory`] | the memory of long runs |
 //! | [`mod@bench`] | the speed of the simulation and of the tuning rules, beside Python |
 //! | [`long_runs`] | scenarios of any length for these |
+//! | [`board_demo`] | the demo of the firmware, whose log is committed |
 //! | [`checks`] | pure checks: dependency allow-list, same bits, file hygiene |
 //! | [`fuzz`] | bounded and long runs of the fuzz targets |
 //! | [`manifest`] | a reader for the few TOML files of this workspace |
@@ -23,6 +24,7 @@
 //! | [`usage`] | what a command used |
 
 mod bench;
+mod board_demo;
 mod browser;
 mod checks;
 mod emulator;

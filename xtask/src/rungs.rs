@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::board_demo;
 use crate::checks;
 use crate::emulator;
 use crate::fuzz;
@@ -15,7 +16,7 @@ use crate::shell::{Cmd, Outcome, in_ci, target_dir};
 use crate::swap;
 
 /// All rungs, in order.
-pub(crate) const RUNGS: [Rung; 15] = [
+pub(crate) const RUNGS: [Rung; 16] = [
     Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
     Rung { name: "format", about: "sources are formatted", run: format },
     Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
@@ -39,6 +40,11 @@ pub(crate) const RUNGS: [Rung; 15] = [
     },
     Rung { name: "on-target", about: "the tests that run on the microcontroller", run: emulator::on_target },
     Rung { name: "swap", about: "laws replaced under an interrupt: whole, without a bump", run: swap::rung },
+    Rung {
+        name: "board-demo",
+        about: "the demo on the emulated board logs what it should",
+        run: board_demo::rung,
+    },
     Rung { name: "demo", about: "the program without arguments runs its scenario", run: demo },
     Rung { name: "report", about: "pages are accessible, offline, legible, small", run: report::rung },
     Rung { name: "fuzz", about: "a bounded run of every fuzz target", run: fuzz_rung },

@@ -6,7 +6,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::path::Path;
 
 /// Commands that are planned, and none yet.
-const LATER: [&str; 2] = ["batch", "export"];
+const LATER: [&str; 1] = ["batch"];
 
 /// What is to be said of a wrong argument instead of the parser's own words, when there is something better.
 pub(super) fn better(error: &clap::Error) -> Option<Problem> {

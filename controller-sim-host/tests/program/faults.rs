@@ -100,7 +100,7 @@ fn wrong_arguments_have_a_help() {
         (&["s.toml"][..], "controller-sim run s.toml"),
         (&["none.toml"], "controller-sim run none.toml"),
         (&["my file"], "controller-sim run 'my file'"),
-        (&["export"], "the command `export` is not in this version"),
+        (&["export"], "--format <FORMAT>"),
         (&["batch", "--json"], "the command `batch` is not in this version"),
         (&["batch", "s.toml"], "not in this version"),
         (&["run", "s.toml", "--force"], "--csv <FILE>"),

@@ -3,6 +3,7 @@
 mod analyze;
 mod assess;
 mod design;
+mod export;
 mod faults;
 mod features;
 mod files;

@@ -2,7 +2,8 @@
 
 use crate::folder::{Folder, json, text};
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
+    "export",
     "run",
     "demo",
     "design",

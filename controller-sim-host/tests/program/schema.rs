@@ -67,6 +67,7 @@ impl Validator<'_> {
                     }
                     true
                 }
+                "maxItems" => value.as_array().is_none_or(|list| Some(list.len() as u64) <= rule.as_u64()),
                 "minItems" => value.as_array().is_none_or(|list| Some(list.len() as u64) >= rule.as_u64()),
                 "minimum" => value.as_f64().is_none_or(|x| Some(x) >= rule.as_f64()),
                 "exclusiveMinimum" => value.as_f64().is_none_or(|x| Some(x) > rule.as_f64()),

@@ -11,7 +11,7 @@ pub(crate) const CASES: &[Case] = &[
     (&[("pid = { kp = 2.35, ki = 1.88, kd = 0.48, tf = 0.119 }\n", "")], &[("missing-key", 16, 1, "`pid` is missing", "pid = {")]),
     (&[(GAINS, "")], &[("missing-key", 18, 7, "`pid` has no gain", "`kp`")]),
     (&[("pid = { kp = 2.35, ki = 1.88, kd = 0.48, tf = 0.119 }", "design = { method = \"drmo\", kpidn = 0.001 }")], &[("design", 18, 10, "`design` by drmo: the noise gain kpidn cannot be 0.001: the least attainable is", "more than the least")]),
-    (&[("pid = { kp = 2.35, ki = 1.88, kd = 0.48, tf = 0.119 }", "design = { method = \"simc\", kpidn = 4.0 }")], &[("conflict", 18, 29, "`design.kpidn` means nothing to the method simc", "belongs to momi, drmo, de-momi")]),
+    (&[("pid = { kp = 2.35, ki = 1.88, kd = 0.48, tf = 0.119 }", "design = { method = \"simc\", ms = 1.4 }")], &[("conflict", 18, 29, "`design.ms` means nothing to the method simc", "belongs to pi-ms")]),
     (&[("pid = { kp = 2.35, ki = 1.88, kd = 0.48, tf = 0.119 }", "design = { method = \"momy\" }")], &[("unknown-choice", 18, 21, "momy", "momi")]),
     (&[("kp = 2.35", "Kp = 2.35")], &[("unknown-key", 18, 9, "unknown key `Kp` in `pid`", "did you mean `kp`?")]),
     (&[("kd = 0.48, tf = 0.119", "kd = 0.48")], &[("conflict", 18, 36, "`pid.kd = 0.48` needs a filter, and `tf` is 0", "at least 0.005 s")]),

@@ -1,0 +1,72 @@
+//! A loop for the target, on the command line.
+
+use crate::folder::{BASE, Folder, json, keys, text};
+
+const TWO: &str = "
+version = 1
+ts = 0.1
+duration = 5.0
+[plant]
+tf = \"1/(1+s)\"
+[[controller]]
+name = \"first\"
+pid = { kp = 1.0, ki = 1.0 }
+[[controller]]
+name = \"second\"
+pid = { kp = 2.0, ki = 1.0 }
+estimator = { gain = 1.0, a1 = 1.0, a2 = 0.0, dead_time = 1.0, kfd = 0.5, tfd = 0.5 }
+";
+
+#[test]
+fn a_loop_is_written_to_the_screen_or_to_a_file() {
+    let folder = Folder::new("export");
+    folder.write("two.toml", TWO);
+    let shown = folder.done(&["export", "two.toml", "--format", "rust", "--controller", "second"]);
+    for part in [
+        "//! second: the loop of `two.toml`",
+        "kp: 2.0,",
+        "pub const CAPACITY: usize = 11;",
+        "const _: () = assert!(",
+    ] {
+        assert!(shown.contains(part), "`{part}` is not in:\n{shown}");
+    }
+    let saved = ["export", "two.toml", "--format", "rust", "--controller", "second", "--save", "law.rs"];
+    assert_eq!(folder.done(&saved), "wrote law.rs\n");
+    assert_eq!(folder.read("law.rs"), shown);
+    let again = folder.run(&saved);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("--force"), "{}", text(&again.stderr));
+    let object = json(&folder.run(&[
+        "export",
+        "two.toml",
+        "--format",
+        "rust",
+        "--controller",
+        "second",
+        "--precision",
+        "f64",
+        "--json",
+    ]));
+    assert_eq!(keys(&object).join(" "), "version controller format precision ts capacity text saved");
+    assert!(object["text"].as_str().is_some_and(|text| text.contains("Controller<f64")));
+    assert!(object["saved"].is_null());
+}
+
+#[test]
+fn what_cannot_be_exported_says_what_to_do() {
+    let folder = Folder::new("export-refused");
+    folder.write("two.toml", TWO);
+    folder.write("base.toml", BASE);
+    let fails = |arguments: &[&str], code: i32, part: &str| {
+        let output = folder.run(&[&["export", "--format", "rust"], arguments].concat());
+        let said = text(&output.stderr);
+        assert_eq!((output.status.code(), text(&output.stdout)), (Some(code), ""), "{said}");
+        assert!(said.contains(part), "`{part}` is not in:\n{said}");
+    };
+    fails(&["two.toml"], 2, "`first`, `second`");
+    fails(&["two.toml", "--controller", "secnd"], 2, "did you mean `second`?");
+    fails(&["two.toml", "--controller", "second", "--capacity", "4"], 3, "--capacity");
+    fails(&["two.toml", "--controller", "first", "--save", "no/law.rs"], 2, "mkdir -p no");
+    fails(&["absent.toml"], 2, "absent.toml");
+    assert_eq!(folder.names(), ["base.toml", "two.toml"]);
+}
