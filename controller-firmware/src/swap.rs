@@ -6,7 +6,7 @@
 
 use controller_core::{
     Controller, ControllerConfig, ControllerInput, ControllerState, Estimator, EstimatorConfig, LimitConfig,
-    ParamCell, Pid, PidConfig,
+    ParamCell, PidConfig,
 };
 
 /// Sampling period \[s\].
@@ -184,21 +184,19 @@ fn bound(old: &Law, new: &Law, last: ControllerInput<f32>, now: ControllerInput<
     let from_y = (from_y(new) - from_y(old)).abs() * (now.y - last.y).abs();
     // Half a unit in the last place for each of some hundred operations, none on anything larger than the terms and
     // what the gains make of the signals.
-    let gains = [old, new]
-        .map(|law| from_y_size(law))
-        .into_iter()
-        .fold(0.0, |most: f32, x| if x > most { x } else { most });
+    let (gain_old, gain_new) = (from_y_size(old), from_y_size(new));
+    let gains = if gain_new > gain_old { gain_new } else { gain_old };
     let rounding = 100.0 * f32::EPSILON * (terms + gains * (now.r.abs() + now.y.abs() + last.y.abs() + 1.0));
     increment + from_r + from_y + rounding
 }
 
 /// The change of the output in the same sample per change of the measurement [u/y].
 fn from_y(law: &Law) -> f32 {
-    -Pid::coefficients(law.pid()).h_y - through_estimator(law)
+    -law.pid().coefficients().h_y - through_estimator(law)
 }
 
 fn from_y_size(law: &Law) -> f32 {
-    Pid::coefficients(law.pid()).h_y.abs() + through_estimator(law).abs()
+    law.pid().coefficients().h_y.abs() + through_estimator(law).abs()
 }
 
 /// The estimator's share: its section, `1/K`, and half the gain of each shared lag.

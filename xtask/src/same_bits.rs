@@ -68,7 +68,7 @@ const SHARES: [Share; 7] = [
 const SOAK: u32 = 10;
 
 /// Seconds that one image may take in the ladder.
-const SECONDS: u32 = 300;
+const SECONDS: u32 = 900;
 
 /// The rung.
 pub(crate) fn rung(root: &Path) -> Outcome<Done> {
