@@ -35,8 +35,8 @@ use keep;
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    // The start-up code, the critical section, the handler of panics.
-    use {cortex_m as _, panic_never as _};
+    // The handler of panics; the critical section comes with the other crate.
+    use panic_never as _;
     blocks::keep_all::<f32>();
     blocks::keep_all::<f64>();
     laws::keep_all::<f32>();
@@ -45,7 +45,9 @@ fn main() -> ! {
     loops::keep_all::<f64>();
     #[cfg(feature = "unchecked-index")]
     keep!(unchecked => fn(&_, _) -> _);
-    loop {}
+    loop {
+        cortex_m::asm::wfi();
+    }
 }
 
 /// What the laws must not do.
