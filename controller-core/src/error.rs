@@ -3,9 +3,10 @@
 use core::fmt;
 use heapless::Vec;
 
-/// How many faults one [`ConfigErrors`] can hold: more than one loop has parameters. 32 bytes each, on the stack of the
-/// caller of `new`.
-pub const MAX_FAULTS: usize = 48;
+/// How many faults one [`ConfigErrors`] can hold: more than one loop has parameters; without an operating system 12. A
+/// fault takes 32 bytes, and several lists of them lie on the stack of the caller of `new`: with 48 it would need most of a
+/// small controller's memory (15 KB on a Cortex-M0).
+pub const MAX_FAULTS: usize = if cfg!(target_os = "none") { 12 } else { 48 };
 
 macro_rules! params {
     ($($(#[$doc:meta])* $name:ident = $number:literal, $text:literal;)*) => {

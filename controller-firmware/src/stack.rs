@@ -4,7 +4,7 @@ use core::arch::asm;
 use cortex_m_rt::STACK_PAINT_VALUE;
 
 /// How far below its caller [`used_by`] looks \[bytes\].
-const DEPTH: usize = 2048;
+const DEPTH: usize = 12 * 1024;
 
 /// The most stack that was in use since the start \[bytes\]: what is no longer painted. (A piece that [`used_by`] has
 /// painted again does not count.)
@@ -14,6 +14,13 @@ pub fn high_water() -> usize {
     start - unpainted(end, start)
 }
 
+/// Whether the stack has been used to its last word, and perhaps beyond.
+#[must_use]
+pub fn is_exhausted() -> bool {
+    let (end, _) = bounds();
+    unpainted(end, end + 4) == end
+}
+
 /// The size of the stack \[bytes\].
 #[must_use]
 pub fn size() -> usize {
@@ -21,7 +28,7 @@ pub fn size() -> usize {
     start - end
 }
 
-/// The stack that `work` uses, its return address included \[bytes\]; at most 2048 can be told. Interrupts wait.
+/// The stack that `work` uses, its return address included \[bytes\]; at most 12 KiB can be told. Interrupts wait.
 #[inline(never)]
 pub fn used_by(work: impl FnOnce()) -> usize {
     cortex_m::interrupt::free(|_| {

@@ -10,8 +10,11 @@ use core::hint::black_box;
 /// Before anything else has run.
 pub(crate) const FIRST: &[(&str, fn())] = &[("the floating-point unit rounds as IEEE 754 does", rounding)];
 /// After all others.
-pub(crate) const LAST: &[(&str, fn())] =
-    &[("the stack is large enough", whole_stack), ("a step needs little stack", stack_of_a_step)];
+pub(crate) const LAST: &[(&str, fn())] = &[
+    ("the stack is large enough", whole_stack),
+    ("a step needs little stack", stack_of_a_step),
+    ("building a law fits into a small stack", stack_of_new),
+];
 
 /// No flush-to-zero, no default NaN, rounding to nearest: with any of these bits set the results would have other bits than
 /// on the host.
@@ -79,4 +82,13 @@ fn stack_of_a_step() {
     });
     print!("{most} bytes, of which {nothing} for the call ... ");
     assert!(nothing <= 32 && most > nothing && most <= 512);
+}
+
+/// A law is built where there is time, but perhaps not much memory: the faults it could have take most of it.
+fn stack_of_new() {
+    let config = black_box(ControllerConfig::default());
+    let mut law = None;
+    let used = stack::used_by(|| law = Loop::new(black_box(&config), 0.01).ok());
+    print!("{used} bytes ... ");
+    assert!(law.is_some() && used <= 6 * 1024);
 }

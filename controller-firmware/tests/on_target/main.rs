@@ -26,6 +26,8 @@ fn main() -> ! {
         for (name, test) in tests {
             print!("test {name} ... ");
             test();
+            // Beyond the end of the stack lie the statics of other tests.
+            assert!(!controller_firmware::stack::is_exhausted(), "the stack was too small");
             println!("ok");
             passed += 1;
         }
