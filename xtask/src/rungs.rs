@@ -24,7 +24,7 @@ pub(crate) const RUNGS: [Rung; 16] = [
     Rung { name: "docs", about: "documentation builds without a warning", run: docs_rung },
     Rung {
         name: "targets",
-        about: "the core builds for every microcontroller target, the closed-form rules for the smallest",
+        about: "the core and its adapters build for every microcontroller target, the closed-form rules for the smallest",
         run: targets,
     },
     Rung { name: "dependencies", about: "the core depends only on what is allowed", run: dependencies },
@@ -53,6 +53,9 @@ pub(crate) const RUNGS: [Rung; 16] = [
 
 /// The crate that is flashed.
 pub(crate) const CORE: &str = "controller-core";
+
+/// The crate that connects it to a board.
+const HAL: &str = "controller-hal";
 
 /// The crate whose closed forms a target can tune itself with.
 const DESIGN: &str = "controller-design";
@@ -119,20 +122,29 @@ fn targets(root: &Path) -> Outcome<Done> {
     if let Some(message) = setup::lacking(root, Part::Target, &targets)? {
         return Ok(Done::Lacking(message));
     }
-    let forms = feature_forms(&Manifest::read(&root.join(CORE).join("Cargo.toml"))?);
-    for target in &targets {
-        for form in &forms {
-            Cmd::cargo(root).args(["build", "-p", CORE, "--release", "--target", target]).args(form).run()?;
+    let mut builds = 0;
+    for package in [CORE, HAL] {
+        let forms = feature_forms(&Manifest::read(&root.join(package).join("Cargo.toml"))?);
+        builds += forms.len();
+        for target in &targets {
+            for form in &forms {
+                Cmd::cargo(root)
+                    .args(["build", "-p", package, "--release", "--target", target])
+                    .args(form)
+                    .run()?;
+            }
         }
     }
     Cmd::cargo(root)
         .args(["build", "-p", DESIGN, "--release", "--target", SMALLEST, "--no-default-features"])
         .run()?;
-    Ok(Done::Passed(format!("{} targets, sets of features: {}", targets.len(), forms.len())))
+    Ok(Done::Passed(format!("{} targets, sets of features: {builds}", targets.len())))
 }
 
 /// The arguments that choose features: the default set, each feature alone, all together, and none at all if that differs.
 /// The arguments that choose features: the default set, none at all if that differs, each feature alone, all together.
+/// The arguments that choose features: the default set, each feature alone, all together where there are several, and none
+/// at all if that differs.
 fn feature_forms(manifest: &Manifest) -> Vec<Vec<String>> {
     let mut forms = vec![Vec::new()];
     if let Some(features) = manifest.table("features") {
@@ -145,6 +157,12 @@ fn feature_forms(manifest: &Manifest) -> Vec<Vec<String>> {
         forms.extend(each.iter().map(|feature| with(feature)));
         if each.len() > 1 {
             forms.push(with(&each.join(",")));
+        let others: Vec<&str> = features.keys().filter(|key| !["default", "std"].contains(key)).collect();
+        for feature in &others {
+            forms.push(vec!["--no-default-features".into(), "--features".into(), (*feature).into()]);
+        }
+        if others.len() > 1 {
+            forms.push(vec!["--no-default-features".into(), "--features".into(), others.join(",")]);
         }
     }
     forms
@@ -229,12 +247,20 @@ mod tests {
 
     #[test]
     fn each_feature_is_built_alone_and_all_together_but_std() {
+    fn each_feature_is_built_alone_and_with_the_others_but_std() {
         let manifest =
             Manifest::parse("[features]\ndefault = [\"trace\"]\nstd = []\ntrace = []\ndefmt = []\n");
         let forms: Vec<String> = feature_forms(&manifest).iter().map(|form| form.join(" ")).collect();
         let alone = |feature: &str| format!("--no-default-features --features {feature}");
         let none = "--no-default-features".into();
         let expected = [String::new(), none, alone("trace"), alone("defmt"), alone("trace,defmt")];
+        let expected = [
+            String::new(),
+            "--no-default-features".into(),
+            alone("trace"),
+            alone("defmt"),
+            alone("trace,defmt"),
+        ];
         assert_eq!(forms, expected);
     }
 
