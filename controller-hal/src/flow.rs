@@ -43,8 +43,7 @@ impl Default for FlowConfig {
     }
 }
 
-/// Square-root extraction: the flow through an orifice or a nozzle from its differential pressure, in single precision,
-/// for targets on which a root in software is dear.
+/// Square-root extraction: the flow through an orifice or a nozzle from its differential pressure, in single precision.
 ///
 /// Law: `q = flow * root(dp/pressure)`, `root(x) = sqrt(x)` from `linear_below` on and `x/sqrt(linear_below)` below, 0 below
 /// `cut_off`; limited at twice the full flow. The root is [`fast_sqrt`]: the flow's relative error is at most 5e-6 for it
@@ -103,6 +102,13 @@ impl SquareRootFlow {
     /// The flow at a differential pressure.
     #[must_use]
     pub fn convert(&self, pressure: Reading<f32>) -> Reading<f32> {
+        self.convert_with(pressure, fast_sqrt)
+    }
+
+    /// As [`convert`](Self::convert) with another root of numbers from 1e-6 to 4, such as `libm::sqrtf`, which is exact and,
+    /// without a floating-point unit, cheaper; see [`fast_sqrt`]. The line below still ends at the approximate root.
+    #[must_use]
+    pub fn convert_with(&self, pressure: Reading<f32>, root: impl FnOnce(f32) -> f32) -> Reading<f32> {
         let x = pressure.value * self.per_pressure;
         if x.is_nan() || pressure.value.is_infinite() {
             return Reading { value: 0.0, quality: Quality::Bad };
@@ -110,7 +116,7 @@ impl SquareRootFlow {
         let size = x.abs();
         let beyond = size > MOST;
         let size = if beyond { MOST } else { size };
-        let root = if size < self.linear_below { size * self.slope } else { fast_sqrt(size) };
+        let root = if size < self.linear_below { size * self.slope } else { root(size) };
         let root = if root < self.cut_off { 0.0 } else { root };
         let (root, wrong) = match self.negative {
             NegativePressure::Mirror => (if x < 0.0 { -root } else { root }, false),
@@ -131,6 +137,10 @@ impl SquareRootFlow {
 /// Relative error at most 5e-6 for normal numbers (measured over every number of the range that [`SquareRootFlow`] works in).
 /// Of what is not above 0, a NaN too, it gives 0; of infinity the root of the largest number; below the normal range the
 /// result is too small. Cost: 10 operations, no division, no table, 2 compares.
+///
+/// Executed instructions, measured: 23 on a Cortex-M4F, where `libm::sqrtf`, which is exact, takes 46; on a Cortex-M0, which does every
+/// operation by software, 1226 against 409. There the exact root is the better one ([`SquareRootFlow::convert_with`]); micromath's root
+/// alone takes 9 and 46, and is off by up to 6 %.
 ///
 /// ```
 /// use controller_hal::fast_sqrt;

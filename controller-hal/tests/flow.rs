@@ -108,6 +108,19 @@ fn a_negative_pressure_is_noise_or_a_fault_or_flow() {
 }
 
 #[test]
+fn another_root_is_taken_where_there_is_one() {
+    let flow = SquareRootFlow::new(&FlowConfig { flow: 80.0, ..FlowConfig::default() }).unwrap();
+    for k in 1_u16..400 {
+        let x = 0.01 * f32::from(k) + 0.001;
+        let exact = 80.0 * f64::from(x).sqrt();
+        let found = flow.convert_with(good(x), f32::sqrt);
+        assert!((f64::from(found.value) - exact).abs() <= exact * 3e-7, "{x}");
+        assert_eq!(found.quality, Quality::Good);
+    }
+    assert_eq!(flow.convert_with(good(0.001), |_| f32::NAN), flow.convert(good(0.001)));
+}
+
+#[test]
 fn quality_only_gets_worse() {
     let flow = SquareRootFlow::new(&FlowConfig::default()).unwrap();
     let of = |value, quality| flow.convert(Reading { value, quality });
