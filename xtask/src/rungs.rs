@@ -142,9 +142,6 @@ fn targets(root: &Path) -> Outcome<Done> {
 }
 
 /// The arguments that choose features: the default set, each feature alone, all together, and none at all if that differs.
-/// The arguments that choose features: the default set, none at all if that differs, each feature alone, all together.
-/// The arguments that choose features: the default set, each feature alone, all together where there are several, and none
-/// at all if that differs.
 fn feature_forms(manifest: &Manifest) -> Vec<Vec<String>> {
     let mut forms = vec![Vec::new()];
     if let Some(features) = manifest.table("features") {
@@ -157,12 +154,6 @@ fn feature_forms(manifest: &Manifest) -> Vec<Vec<String>> {
         forms.extend(each.iter().map(|feature| with(feature)));
         if each.len() > 1 {
             forms.push(with(&each.join(",")));
-        let others: Vec<&str> = features.keys().filter(|key| !["default", "std"].contains(key)).collect();
-        for feature in &others {
-            forms.push(vec!["--no-default-features".into(), "--features".into(), (*feature).into()]);
-        }
-        if others.len() > 1 {
-            forms.push(vec!["--no-default-features".into(), "--features".into(), others.join(",")]);
         }
     }
     forms
@@ -247,20 +238,12 @@ mod tests {
 
     #[test]
     fn each_feature_is_built_alone_and_all_together_but_std() {
-    fn each_feature_is_built_alone_and_with_the_others_but_std() {
         let manifest =
             Manifest::parse("[features]\ndefault = [\"trace\"]\nstd = []\ntrace = []\ndefmt = []\n");
         let forms: Vec<String> = feature_forms(&manifest).iter().map(|form| form.join(" ")).collect();
         let alone = |feature: &str| format!("--no-default-features --features {feature}");
         let none = "--no-default-features".into();
         let expected = [String::new(), none, alone("trace"), alone("defmt"), alone("trace,defmt")];
-        let expected = [
-            String::new(),
-            "--no-default-features".into(),
-            alone("trace"),
-            alone("defmt"),
-            alone("trace,defmt"),
-        ];
         assert_eq!(forms, expected);
     }
 
