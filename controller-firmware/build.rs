@@ -5,9 +5,6 @@
 
 use controller_pil::board;
 
-/// The images that log through defmt, which needs a linker script of its own.
-const LOGGING: [&str; 1] = ["demo"];
-
 /// With less flash \[bytes\] than this, images leave out what is large.
 const SMALL: u32 = 1 << 20;
 
@@ -45,7 +42,6 @@ fn main() {
         println!("cargo:rustc-link-arg=--defsym={symbol}={value:#x}");
     }
     println!("cargo:rustc-link-arg=-Tlink.x");
-    for image in LOGGING {
-        println!("cargo:rustc-link-arg-bin={image}=-Tdefmt.x");
-    }
+    // Every image can format through defmt, those that do not log as well: its names need a place that is not loaded.
+    println!("cargo:rustc-link-arg=-Tdefmt.x");
 }
