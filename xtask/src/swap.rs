@@ -24,7 +24,7 @@ const WRONG: &str = "2000";
 const INTERRUPTS_OFF: u32 = 250;
 
 /// Seconds that the image may take for the ladder's share.
-const SECONDS: u32 = 120;
+const SECONDS: u32 = 600;
 
 /// The rung.
 pub(crate) fn rung(root: &Path) -> Outcome<Done> {
