@@ -13,7 +13,7 @@ use crate::shell::{Cmd, Outcome};
 const MANIFEST: &str = "fuzz/Cargo.toml";
 
 /// Seconds for one target in the ladder ..
-const SECONDS_PER_TARGET: u64 = 60;
+const SECONDS_PER_TARGET: u64 = 30;
 /// .. for so many targets; more of them share the same time, so that the ladder keeps its own.
 const FULL_SHARES: u64 = 5;
 
@@ -75,9 +75,9 @@ mod tests {
 
     #[test]
     fn the_ladder_keeps_its_time() {
-        assert_eq!(ladder_seconds(4), 240);
-        assert_eq!(ladder_seconds(5), 300);
-        assert_eq!(ladder_seconds(100), 300);
+        assert_eq!(ladder_seconds(4), 120);
+        assert_eq!(ladder_seconds(5), 150);
+        assert_eq!(ladder_seconds(100), 150);
     }
 
     #[test]
