@@ -14,6 +14,7 @@ use controller_core::{
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Class {
     Nominal,
+    Options,
     High,
     Low,
     Off,
@@ -29,8 +30,9 @@ enum Class {
     Random,
 }
 
-const CLASSES: [(Class, &str); 14] = [
+const CLASSES: [(Class, &str); 15] = [
     (Class::Nominal, "nominal"),
+    (Class::Options, "options"),
     (Class::High, "high"),
     (Class::Low, "low"),
     (Class::Off, "off"),
@@ -192,7 +194,8 @@ where
 }
 
 impl Counts<'_> {
-    /// A closed loop: set-points that move, limits on both sides, read-back, offset, inhibition; swaps of the law.
+    /// A closed loop: a set-point that moves, noise, an offset; then with read-back, inhibition, uncertain measurements and
+    /// a compensator that is switched; swaps of the law; limits on both sides.
     #[inline(never)]
     fn closed<T: Real, C: Compensate<T>, L: Regulator<T>>(
         &mut self,
@@ -203,19 +206,22 @@ impl Counts<'_> {
     {
         let mut chance = Chance::new(2);
         let mut run = Run::new(law);
-        for k in 0..2 * SAMPLES {
-            let r = if (k / 50) % 2 == 0 { 1.0 } else { -1.0 };
-            let mut input = run.input(r);
-            input.y = input.y + chance.number(0.02);
-            input.offset = chance.number(0.1);
-            input.u_applied = chance.once_in(4).then(|| chance.number(2.0));
-            (input.inhibit_up, input.inhibit_down) = (chance.once_in(5), chance.once_in(5));
-            input.compensate = !chance.once_in(5);
-            input.quality = if chance.once_in(5) { Quality::Uncertain } else { Quality::Good };
-            run.sample(self, Class::Nominal, &input);
-            let mut state = run.state.clone();
-            let adopt = adopt::<T, C, L>;
-            self.adopt.note(self.report.clock.count(adopt, other, &mut state, law).1);
+        for class in [Class::Nominal, Class::Options] {
+            for k in 0..SAMPLES {
+                let mut input = run.input(if (k / 50) % 2 == 0 { 1.0 } else { -1.0 });
+                input.y = input.y + chance.number(0.02);
+                input.offset = chance.number(0.1);
+                if class == Class::Options {
+                    input.u_applied = chance.once_in(4).then(|| chance.number(2.0));
+                    (input.inhibit_up, input.inhibit_down) = (chance.once_in(5), chance.once_in(5));
+                    input.compensate = !chance.once_in(5);
+                    input.quality = if chance.once_in(5) { Quality::Uncertain } else { Quality::Good };
+                }
+                run.sample(self, class, &input);
+                let mut state = run.state.clone();
+                let adopt = adopt::<T, C, L>;
+                self.adopt.note(self.report.clock.count(adopt, other, &mut state, law).1);
+            }
         }
         for (class, r) in [(Class::High, 1e3), (Class::Low, -1e3)] {
             for _ in 0..SAMPLES {
