@@ -20,6 +20,7 @@
 //! | [`checks`] | pure checks: dependency allow-list, same bits, file hygiene |
 //! | [`fuzz`] | bounded and long runs of the fuzz targets |
 //! | [`manifest`] | a reader for the few TOML files of this workspace |
+//! | [`size`] | what the blocks cost on the emulated boards |
 //! | [`shell`] | running commands and printing them |
 //! | [`usage`] | what a command used |
 
@@ -40,6 +41,7 @@ mod rungs;
 mod same_bits;
 mod setup;
 mod shell;
+mod size;
 mod swap;
 mod usage;
 
@@ -64,7 +66,7 @@ struct Command {
 }
 
 /// All commands in the order of the help.
-const COMMANDS: [Command; 7] = [
+const COMMANDS: [Command; 8] = [
     Command {
         name: "setup",
         about: "add what the toolchain lacks, the emulator, the browser for the reports",
@@ -88,6 +90,11 @@ const COMMANDS: [Command; 7] = [
         name: "bench",
         about: "speed of simulation (fails below 100 times numpy) and tuning rules",
         options: &[],
+    },
+    Command {
+        name: "size",
+        about: "instructions, code, RAM, stack on every board; compares the tables",
+        options: &[("--update", "write the tables"), ("--markdown", "print the table for people")],
     },
     Command { name: "docs", about: "build the documentation; warnings are errors", options: &[] },
     Command { name: "fix", about: "format all sources", options: &[] },
@@ -115,6 +122,7 @@ enum Request {
     ListRungs,
     Soak { minutes: u64 },
     Bench,
+    Size(size::Then),
     Docs,
     Fix,
 }
@@ -164,6 +172,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
         }
         Request::Soak { minutes } => soak(root, minutes),
         Request::Bench => bench::run(root),
+        Request::Size(then) => size::run(root, then).map(|remark| println!("{remark}")),
         Request::Docs => rungs::docs(root),
         Request::Fix => Cmd::cargo(root).args(["fmt", "--all"]).run(),
     }
@@ -239,6 +248,13 @@ fn parse(args: &[String]) -> Result<Request, String> {
             Ok(Request::Soak { minutes })
         }
         "bench" => rest.option(&[]).map(|_| Request::Bench),
+        "size" => {
+            let mut then = size::Then::Check;
+            while let Some((option, _)) = rest.option(&["--update", "--markdown"])? {
+                then = if option == "--update" { size::Then::Update } else { size::Then::Markdown };
+            }
+            Ok(Request::Size(then))
+        }
         "docs" => rest.option(&[]).map(|_| Request::Docs),
         "fix" => rest.option(&[]).map(|_| Request::Fix),
         other => Err(unknown("command", other, &COMMANDS.map(|c| c.name))),
@@ -375,6 +391,8 @@ mod tests {
         assert_eq!(words("soak --minutes 5"), Ok(Request::Soak { minutes: 5 }));
         assert_eq!(words("soak --minutes=0"), Ok(Request::Soak { minutes: 0 }));
         assert_eq!(words("bench"), Ok(Request::Bench));
+        assert_eq!(words("size"), Ok(Request::Size(size::Then::Check)));
+        assert_eq!(words("size --update"), Ok(Request::Size(size::Then::Update)));
         let only = vec!["clippy".to_string(), "demo".to_string()];
         let options = ladder::Options { keep_going: true, only };
         assert_eq!(words("test --only clippy,demo --keep-going"), Ok(Request::Test(options)));

@@ -13,10 +13,11 @@ use crate::report;
 use crate::same_bits;
 use crate::setup::{self, Part, Toolchain};
 use crate::shell::{Cmd, Outcome, in_ci, target_dir};
+use crate::size;
 use crate::swap;
 
 /// All rungs, in order.
-pub(crate) const RUNGS: [Rung; 16] = [
+pub(crate) const RUNGS: [Rung; 17] = [
     Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
     Rung { name: "format", about: "sources are formatted", run: format },
     Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
@@ -44,6 +45,11 @@ pub(crate) const RUNGS: [Rung; 16] = [
         name: "board-demo",
         about: "the demo on the emulated board logs what it should",
         run: board_demo::rung,
+    },
+    Rung {
+        name: "size",
+        about: "instructions, code, RAM and stack on every board are those of the table",
+        run: size::rung,
     },
     Rung { name: "demo", about: "the program without arguments runs its scenario", run: demo },
     Rung { name: "report", about: "pages are accessible, offline, legible, small", run: report::rung },

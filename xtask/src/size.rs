@@ -1,0 +1,86 @@
+//! What the blocks cost on the emulated boards: instructions, code, RAM, stack; the committed tables and their check.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`measure`] | building and running the meter's images, reading what they print |
+//! | [`budget`] | what a step may cost |
+//! | [`table`] | the committed table |
+//! | [`markdown`] | the table for people, beside other controllers |
+
+mod budget;
+mod markdown;
+mod measure;
+mod table;
+
+use std::path::{Path, PathBuf};
+
+use crate::ladder::Done;
+use crate::setup::{self, Part, Toolchain};
+use crate::shell::{Cmd, Outcome};
+
+/// The table for people.
+const PAGE: &str = "controller-firmware/COSTS.md";
+
+/// What to do with what is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Then {
+    /// Print it and compare it with the committed tables.
+    Check,
+    /// Write the tables.
+    Update,
+    /// Print the table for people, and nothing else.
+    Markdown,
+}
+
+/// Measures, then does what is asked for.
+pub(crate) fn run(root: &Path, then: Then) -> Outcome<String> {
+    let version = Cmd::new("rustc", root).arg("--version").capture()?;
+    let version = version.trim();
+    let number = version.split_whitespace().nth(1).ok_or_else(|| format!("what version is `{version}`?"))?;
+    let rows = measure::all(root)?;
+    let (text, page) = (table::text(&rows, version), markdown::page(&rows, version));
+    let tables: [(PathBuf, &str); 2] =
+        [(Path::new("tests/target").join(format!("size-{number}.txt")), &text), (PAGE.into(), &page)];
+    match then {
+        Then::Markdown => print!("{page}"),
+        Then::Update => {
+            for (path, text) in &tables {
+                let full = root.join(path);
+                full.parent()
+                    .map_or(Ok(()), std::fs::create_dir_all)
+                    .map_err(|e| format!("{}: {e}", path.display()))?;
+                std::fs::write(full, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+                println!("{} written", path.display());
+            }
+        }
+        Then::Check => {
+            print!("{text}");
+            if !root.join(&tables[0].0).is_file() {
+                return Ok(format!("there is no table for {version}: nothing to compare with"));
+            }
+            for (path, text) in &tables {
+                let committed = std::fs::read_to_string(root.join(path)).unwrap_or_default();
+                if committed != *text {
+                    let difference = table::difference(&committed, text);
+                    return Err(format!(
+                        "{difference}{} says something else; if that is meant: cargo xtask size --update",
+                        path.display()
+                    ));
+                }
+            }
+        }
+    }
+    budget::check(&rows)?;
+    Ok(format!("{} blocks as in the table", rows.len()))
+}
+
+/// The rung.
+pub(crate) fn rung(root: &Path) -> Outcome<Done> {
+    if let Some(message) = setup::lacking(root, Part::Target, &Toolchain::read(root)?.targets)? {
+        return Ok(Done::Lacking(message));
+    }
+    if Cmd::new("qemu-system-arm", root).arg("--version").probe().is_none() {
+        return Ok(Done::Lacking("qemu-system-arm is missing; run: cargo xtask setup".into()));
+    }
+    run(root, Then::Check).map(Done::Passed)
+}

@@ -1,0 +1,89 @@
+//! The committed table.
+
+use super::budget;
+use super::measure::Row;
+
+/// The table as it is committed.
+pub(super) fn text(rows: &[Row], compiler: &str) -> String {
+    let mut text = format!(
+        "# What the blocks cost on the emulated boards. Written by `cargo xtask size --update`, checked by `cargo xtask size`.\n\
+         # {compiler}, release profile. Instructions of one call, least-most over all inputs; they are not cycles.\n\
+         # Bytes: code with all that is called, the law, its state, the most stack with all that is called.\n\
+         # A second line gives the classes of inputs where a step's instructions differ.\n\n"
+    );
+    let line = |words: [&str; 13]| {
+        const WIDTHS: [usize; 13] = [11, 12, 5, 12, 7, 6, 5, 6, 12, 6, 16, 7, 7];
+        let cells: Vec<String> =
+            words.iter().zip(WIDTHS).map(|(word, width)| format!("{word:width$}")).collect();
+        format!("{}\n", cells.join(" ").trim_end())
+    };
+    let head = [
+        "board", "block", "type", "step", "code", "stack", "law", "state", "swap", "stack", "new", "code",
+        "stack",
+    ];
+    text.push_str(&line(head));
+    for row in rows {
+        let range = |function: &super::measure::Function| {
+            function.all().map(|range| range.to_string()).unwrap_or_default()
+        };
+        let numbers =
+            [row.step.code, row.step.stack, row.law, row.state, row.adopt.stack, row.new.code, row.new.stack]
+                .map(|number| number.to_string());
+        let [code, stack, law, state, swap_stack, new_code, new_stack] = &numbers;
+        let (step, swap, new) = (range(&row.step), range(&row.adopt), range(&row.new));
+        text.push_str(&line([
+            row.board.name,
+            &row.block,
+            &row.number,
+            &step,
+            code,
+            stack,
+            law,
+            state,
+            &swap,
+            swap_stack,
+            &new,
+            new_code,
+            new_stack,
+        ]));
+        if row.step.dearest().is_some() {
+            let classes: Vec<String> =
+                row.step.classes.iter().map(|(class, range)| format!("{class} {range}")).collect();
+            text.push_str(&format!("    {}\n", classes.join(", ")));
+        }
+        if let Some(budget) = budget::of(row) {
+            let hand = budget.by_hand.map(|count| format!(", by hand {count}")).unwrap_or_default();
+            let note = budget.known.map(|note| format!("; note: {note}")).unwrap_or_default();
+            text.push_str(&format!("    budget {}{hand}{note}\n", budget.most));
+        }
+    }
+    text
+}
+
+/// The first lines in which two texts differ, at most a few.
+pub(super) fn difference(old: &str, new: &str) -> String {
+    const MOST: usize = 20;
+    let (old, new): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
+    let mut text = String::new();
+    let mut count = 0;
+    for at in 0..old.len().max(new.len()) {
+        let (was, is) = (old.get(at), new.get(at));
+        if was != is && count < MOST {
+            text.push_str(&format!("- {}\n+ {}\n", was.unwrap_or(&""), is.unwrap_or(&"")));
+        }
+        count += usize::from(was != is);
+    }
+    text.push_str(&format!("{count} lines differ\n"));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_are_shown_line_by_line() {
+        assert_eq!(difference("a\nb\nc\n", "a\nx\nc\nd\n"), "- b\n+ x\n- \n+ d\n2 lines differ\n");
+        assert_eq!(difference("a\n", "a\n"), "0 lines differ\n");
+    }
+}
