@@ -29,8 +29,9 @@ pub(super) const BUDGETS: [Budget; 5] = [
 ];
 
 /// Why a whole loop takes more than was hoped for.
-const LOOP: &str = "a closed loop's usual sample (nominal) comes near the budget; the most is a sample that changes the \
-                    mode, starts or settles the loop and refuses inputs, all at once, which steps parts of two laws";
+const LOOP: &str = "a closed loop's usual sample (nominal) also asks for the mode, the sample's quality, read-back, \
+                    inhibition and alarms, which the trial behind the budget did not have in full; the most is a sample \
+                    that changes the mode, starts or settles the loop and refuses inputs, all at once: parts of two laws";
 
 /// Why the stack of a whole loop is more than [`STACK`].
 const LOOP_STACK: &str = "the steps of whole loops call the functions for rare samples (another mode, a bad measurement, \

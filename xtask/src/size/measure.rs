@@ -41,7 +41,7 @@ pub(super) struct Function {
     /// Instructions by the class of the input.
     pub(super) classes: Vec<(String, Range)>,
     /// Where it begins in its image.
-    address: String,
+    pub(super) address: String,
     /// Bytes of code, with all that it calls.
     pub(super) code: u32,
     /// Bytes of stack, with all that it calls.
