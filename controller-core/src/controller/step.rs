@@ -31,14 +31,27 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
     ) -> ControllerOutput<T> {
-        let (estimate, status) =
-            if self.goes_on(state, input) { self.go_on(state, input) } else { self.step_any(state, input) };
+        if self.goes_on(state, input) {
+            let (estimate, status) = self.go_on(state, input);
+            self.output(state, estimate, status)
+        } else {
+            self.step_rare(state, input)
+        }
+    }
+
+    /// A sample that does not go on. A function that ends the step: it begins with nothing on the stack.
+    #[cold]
+    #[inline(never)]
+    fn step_rare(
+        &self,
+        state: &mut ControllerState<T, C::State, L::State>,
+        input: &ControllerInput<T>,
+    ) -> ControllerOutput<T> {
+        let (estimate, status) = self.step_any(state, input);
         self.output(state, estimate, status)
     }
 
     /// Any sample.
-    #[cold]
-    #[inline(never)]
     pub(super) fn step_any(
         &self,
         state: &mut ControllerState<T, C::State, L::State>,
