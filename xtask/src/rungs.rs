@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::board_demo;
 use crate::checks;
-use crate::emulator;
+use crate::emulator::{self, REFERENCE};
 use crate::fuzz;
 use crate::ladder::{Done, Rung};
 use crate::manifest::Manifest;
@@ -105,6 +105,25 @@ fn clippy(root: &Path) -> Outcome<Done> {
         return Ok(Done::Lacking(message));
     }
     Cmd::cargo(root).args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]).run()?;
+    // On this machine the images are empty programs.
+    let target = REFERENCE.target;
+    if let Some(message) = setup::lacking(root, Part::Target, &[target.into()])? {
+        return Ok(Done::Lacking(message));
+    }
+    Cmd::cargo(root)
+        .args([
+            "clippy",
+            "-p",
+            emulator::FIRMWARE,
+            "--lib",
+            "--bins",
+            "--test",
+            "on_target",
+            "--target",
+            target,
+        ])
+        .args(["--", "-D", "warnings"])
+        .run()?;
     Done::passed()
 }
 

@@ -95,14 +95,13 @@ fn adopt<T: Real, C: Compensate<T>, L: Regulator<T>>(
 
 /// Measures a loop in all its forms.
 #[inline(never)]
-pub(super) fn measure<T: Real, C: Compensate<T>, L: Regulator<T>>(
+pub(super) fn measure<T: Real, C: Compensate<T> + Copy, L: Regulator<T>>(
     clock: &Clock,
     name: &'static str,
     new: New<T, C, L>,
     compensator: Option<C>,
 ) -> Option<()>
 where
-    C: Copy,
     C::State: Default,
 {
     let Some(report) = Report::new::<T>(clock, name) else { return Some(()) };

@@ -91,10 +91,7 @@ pub(super) fn run(arguments: &ExportArguments, json: bool) -> Result<(), Failure
     }
     let warnings = render(job.input.source(), &job.input.warnings, Severity::Warning, colours());
     io::stderr().write_all(warnings.as_bytes())?;
-    Ok(match saved {
-        Some(path) => print(&format!("wrote {path}\n"))?,
-        None => print(&text)?,
-    })
+    Ok(print(&saved.map_or(text, |path| format!("wrote {path}\n")))?)
 }
 
 /// The only controller, or the one with this name.

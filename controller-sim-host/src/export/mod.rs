@@ -31,7 +31,7 @@ pub enum Refused {
     /// Two loops, one inside the other: each is a file of its own.
     Cascade,
     /// The target's number type cannot hold the law, or the delay memory is too small.
-    Faults(ConfigErrors),
+    Faults(Box<ConfigErrors>),
 }
 
 impl<'a> Export<'a> {
@@ -59,7 +59,7 @@ impl<'a> Export<'a> {
             Precision::F64 => AnyLaw::<f64>::new(spec, ts, latency, capacity).err(),
         };
         match built {
-            Some(faults) => Err(Refused::Faults(faults)),
+            Some(faults) => Err(Refused::Faults(Box::new(faults))),
             None => Ok(Self { scenario, spec, precision, capacity }),
         }
     }

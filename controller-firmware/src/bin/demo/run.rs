@@ -103,7 +103,7 @@ fn report(sample: &TraceSample<f32>, mode: &mut Mode, status: &mut Status) {
         }
         *status = sample.status;
     }
-    if sample.k % 100 == 0 {
+    if sample.k.is_multiple_of(100) {
         // In tenths: whole numbers need no formatting of floats on the host's side to be compared.
         let tenths = |x: f32| (10.0 * x + if x < 0.0 { -0.5 } else { 0.5 }) as i32;
         defmt::info!(
