@@ -19,6 +19,8 @@ pub struct Board {
     pub ram: Region,
     /// Clock of the system timer \[Hz\].
     pub clock: u32,
+    /// What the emulator is told besides the name of the machine.
+    pub emulator: &'static [&'static str],
 }
 
 /// A piece of memory.
@@ -51,15 +53,18 @@ pub const BOARDS: [Board; 5] = [
         flash: Region { origin: 0, length: 4 * MEGA },
         ram: Region { origin: 0x2000_0000, length: 4 * MEGA },
         clock: 25_000_000,
+        emulator: &[],
     },
+    // The largest of the nRF51822: checking a configuration, with all faults at once, takes more stack than 16 KiB leave.
     Board {
         name: "microbit",
         core: "Cortex-M0",
         target: "thumbv6m-none-eabi",
         cpu: None,
         flash: Region { origin: 0, length: 256 * KILO },
-        ram: Region { origin: 0x2000_0000, length: 16 * KILO },
+        ram: Region { origin: 0x2000_0000, length: 32 * KILO },
         clock: 16_000_000,
+        emulator: &["-global", "nrf51-soc.sram-size=32768"],
     },
     Board {
         name: "mps2-an385",
@@ -69,6 +74,7 @@ pub const BOARDS: [Board; 5] = [
         flash: Region { origin: 0, length: 4 * MEGA },
         ram: Region { origin: 0x2000_0000, length: 4 * MEGA },
         clock: 25_000_000,
+        emulator: &[],
     },
     Board {
         name: "mps2-an500",
@@ -78,6 +84,7 @@ pub const BOARDS: [Board; 5] = [
         flash: Region { origin: 0, length: 4 * MEGA },
         ram: Region { origin: 0x2000_0000, length: 4 * MEGA },
         clock: 25_000_000,
+        emulator: &[],
     },
     Board {
         name: "mps2-an505",
@@ -87,6 +94,7 @@ pub const BOARDS: [Board; 5] = [
         flash: Region { origin: 0x1000_0000, length: 4 * MEGA },
         ram: Region { origin: 0x3800_0000, length: 4 * MEGA },
         clock: 20_000_000,
+        emulator: &[],
     },
 ];
 

@@ -35,6 +35,7 @@ pub(crate) fn run(board: &Board, path: &str, words: &[String], log: Log) -> anyh
     }
     let mut child = Command::new(QEMU)
         .args(["-M", board.name, "-display", "none", "-monitor", "none", "-serial", "none"])
+        .args(board.emulator)
         .args(["-icount", CLOCK, "-semihosting-config", &arguments, "-kernel", path])
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
