@@ -10,6 +10,7 @@
 //! * [`advise`], [`design_file`], [`tuning`]: what the tuning rules make of a plant or a record.
 //! * [`advise`], [`design_file`]: what the tuning rules make of a plant.
 //! * [`reproduce`]: every table of the papers, computed again.
+//! * [`pil`]: the controllers in an image on an emulated board, compared bit by bit.
 //! * [`cli`]: the program `controller-sim`.
 //!
 //! ```
@@ -33,6 +34,7 @@ pub mod design_file;
 pub mod export;
 pub mod log;
 pub mod output;
+pub mod pil;
 pub mod plant;
 pub mod report;
 pub mod reproduce;

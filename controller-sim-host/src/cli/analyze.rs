@@ -89,7 +89,7 @@ pub(super) fn run(arguments: &AnalyzeArguments, json: bool, command: &str) -> Re
     if !troubles.is_empty() {
         return Err(Failure::input(troubles));
     }
-    let analysed: Vec<Analysed<'_>> = Job::all(&inputs.list).iter().map(analysed).collect();
+    let analysed: Vec<Analysed<'_>> = Job::all(&inputs.list, None).iter().map(analysed).collect();
     check(&analysed)?;
     if let Some(target) = &target {
         let page = report::analysis_page(&analysed, command);

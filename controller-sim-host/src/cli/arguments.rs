@@ -8,6 +8,7 @@ use crate::simulate::Precision;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use controller_design::design::Method;
+use controller_pil::board::BOARDS;
 use std::path::PathBuf;
 
 /// Runs the controllers that are flashed against an exactly simulated plant.
@@ -56,6 +57,19 @@ pub(super) struct RunArguments {
     /// The scenarios, TOML files; `-` reads one from the standard input
     #[arg(required = true, value_name = "FILES", value_hint = ValueHint::FilePath)]
     pub(super) scenarios: Vec<PathBuf>,
+    /// Run the controllers on this emulated board, too, and compare every output bit by bit; mps2-an386 if not named
+    #[arg(
+        long,
+        value_name = "BOARD",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = BOARDS[0].name,
+        value_parser = PossibleValuesParser::new(BOARDS.map(|board| PossibleValue::new(board.name).help(board.core)))
+    )]
+    pub(super) pil: Option<String>,
+    /// The image for the board; if not given, the workspace's own is built
+    #[arg(long, value_name = "FILE", requires = "pil", value_hint = ValueHint::FilePath)]
+    pub(super) pil_image: Option<PathBuf>,
     #[command(flatten)]
     pub(super) options: Options,
 }

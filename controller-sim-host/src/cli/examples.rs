@@ -23,6 +23,7 @@ Examples:
   controller-sim run fast.toml slow.toml --svg plot.svg    plot-1.svg and plot-2.svg
   controller-sim run my.toml --csv my.csv                  every sample
   controller-sim run my.toml --precision f32               as the target computes
+  controller-sim run my.toml --precision f32 --pil         also in the emulated target: same bits?
   controller-sim run my.toml --set latency=0.05 --set 'plant.tf=\"exp(-s)/(1+2*s)\"'
   controller-sim run my.toml --set 'controller.\"PI + DOB\".observer.alpha=0.2'
   cat my.toml | controller-sim run - --json";

@@ -6,6 +6,7 @@ use super::outputs::Targets;
 use super::progress;
 use super::scenarios::Input;
 use crate::output::{Columns, Complete, Problem, SampleFiles};
+use crate::pil::Target;
 use crate::scenario::{Case, Scenario};
 use crate::simulate::{COLUMNS, Control, RunError, RunOptions, RunResult, View, run_with, sample_of};
 use rayon::ThreadPoolBuilder;
@@ -16,12 +17,15 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 pub(super) struct Job<'a> {
     pub(super) input: &'a Input,
     pub(super) case: &'a Case,
+    /// Where its controllers run besides here.
+    pil: Option<&'static Target>,
 }
 
 impl<'a> Job<'a> {
     /// Every case of every scenario, in order.
-    pub(super) fn all(inputs: &'a [Input]) -> Vec<Self> {
-        inputs.iter().flat_map(|input| input.cases.iter().map(move |case| Self { input, case })).collect()
+    pub(super) fn all(inputs: &'a [Input], pil: Option<&'static Target>) -> Vec<Self> {
+        let cases = |input: &'a Input| input.cases.iter().map(move |case| Self { input, case, pil });
+        inputs.iter().flat_map(cases).collect()
     }
 
     pub(super) fn label(&self) -> Option<&'a str> {
@@ -70,12 +74,15 @@ impl<'a> Job<'a> {
     fn options(&self, options: &Options) -> RunOptions {
         let draws = options.report.is_some() || options.svg.is_some();
         let record = draws.then(|| View { columns: COLUMNS, ..self.view(options) });
-        RunOptions { precision: options.precision.into(), record, ..RunOptions::default() }
+        RunOptions { precision: options.precision.into(), record, pil: self.pil, ..RunOptions::default() }
     }
 
     fn failed(&self, error: &RunError) -> Failure {
         match error {
             RunError::Stopped => Failure::stopped(),
+            RunError::Board { .. } => {
+                Failure::internal(Problem::new("pil", format!("{}: {error}", self.name())))
+            }
             error => Failure::refused(Problem::new("refused", format!("{}: {error}", self.name()))),
         }
     }

@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &ExportArguments, json: bool) -> Result<(), Failure
     if !troubles.is_empty() {
         return Err(Failure::input(troubles));
     }
-    let jobs = Job::all(&inputs.list);
+    let jobs = Job::all(&inputs.list, None);
     let [job] = &*jobs else {
         let problem = Problem::new("usage", "a file with a sweep is many loops");
         return Err(problem

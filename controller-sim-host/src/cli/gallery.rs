@@ -19,7 +19,7 @@ pub(super) fn run(arguments: &DemoArguments, json: bool, command: &str) -> Resul
     if let Some(path) = &arguments.save {
         return save(name, &found, path, arguments.options.force, json);
     }
-    run_inputs(&read_built_in(&found, &arguments.options), &arguments.options, json, command)?;
+    run_inputs(&read_built_in(&found, &arguments.options), &arguments.options, None, json, command)?;
     if !json && !arguments.options.quiet && arguments.name.is_none() {
         print(demo::TRY_NEXT)?;
     }

@@ -5,25 +5,47 @@ use super::execute::{Job, Outcome, execute};
 use super::outputs::Targets;
 use super::scenarios::{Inputs, read_files};
 use super::{Failure, colours, interrupt, print};
-use crate::output::{Complete, FileTarget, Severity, Trouble, publish, render, run_json, run_table};
+use crate::output::{Complete, FileTarget, Problem, Severity, Trouble, publish, render, run_json, run_table};
+use crate::pil::{Compared, Missing, Target, find_image};
 use crate::report::{self, Chapter};
 use crate::simulate::RunResult;
+use controller_pil::board;
 use std::io::{self, Write};
+use std::path::Path;
+use std::sync::OnceLock;
 
 /// `run`: `command` is what was typed.
 pub(super) fn run(arguments: &RunArguments, json: bool, command: &str) -> Result<(), Failure> {
     let inputs = read_files(&arguments.scenarios, &arguments.options);
-    run_inputs(&inputs, &arguments.options, json, command)
+    let pil = match &arguments.pil {
+        // What is wrong with the scenarios is told first, without building anything.
+        Some(board) if inputs.troubles.is_empty() => Some(target(board, arguments.pil_image.as_deref())?),
+        _ => None,
+    };
+    run_inputs(&inputs, &arguments.options, pil, json, command)
+}
+
+/// The board that the controllers run on, too. There is one in the life of the program.
+fn target(board: &str, image: Option<&Path>) -> Result<&'static Target, Failure> {
+    static TARGET: OnceLock<Target> = OnceLock::new();
+    let unknown = || Problem::new("usage", format!("no board `{board}`"));
+    let board = board::named(board).ok_or_else(unknown)?;
+    let found = find_image(board, image).map_err(|Missing { message, help }| {
+        let problem = Problem::new("pil", message);
+        help.map_or(problem.clone(), |help| problem.help(help))
+    })?;
+    Ok(TARGET.get_or_init(|| found))
 }
 
 /// Runs what was read. Nothing is run and no file is touched when anything is wrong.
 pub(super) fn run_inputs(
     inputs: &Inputs,
     options: &Options,
+    pil: Option<&'static Target>,
     json: bool,
     command: &str,
 ) -> Result<(), Failure> {
-    let jobs = Job::all(&inputs.list);
+    let jobs = Job::all(&inputs.list, pil);
     let mut troubles = inputs.troubles.clone();
     // Without the scenarios it is not known how many files there will be; the other mistakes are told at once.
     let runs = if troubles.is_empty() { jobs.len() } else { 1 };
@@ -47,8 +69,10 @@ pub(super) fn run_inputs(
     }
     publish(files).map_err(Failure::internal)?;
     let written = targets.written();
+    let same = outcome_is_same(&chapters);
     if json {
-        return Ok(print(&run_json(&chapters, &written))?);
+        print(&run_json(&chapters, &written))?;
+        return same;
     }
     for input in &inputs.list {
         let warnings = render(input.source(), &input.warnings, Severity::Warning, colours());
@@ -65,7 +89,13 @@ pub(super) fn run_inputs(
             print(&format!("wrote {}: {more}\n", file.path))?;
         }
     }
-    Ok(())
+    same
+}
+
+/// A failure when an output was not the same on the board; the tables say which.
+fn outcome_is_same(chapters: &[Chapter<'_>]) -> Result<(), Failure> {
+    let mut boards = chapters.iter().filter_map(|chapter| Compared::all(chapter.result));
+    if boards.any(|(all, _)| all.first.is_some()) { Err(Failure::differs()) } else { Ok(()) }
 }
 
 /// What opens a file with the program made for it.

@@ -2,8 +2,9 @@
 
 use super::table::remarks;
 use super::{Chapter, Problem, Trouble, precision_name};
+use crate::pil::{Compared, Difference};
 use crate::scenario::Fault;
-use crate::simulate::{EventKind, Metrics};
+use crate::simulate::{EventKind, Metrics, RunResult};
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -29,7 +30,48 @@ struct Run<'a> {
     precision: &'static str,
     files: Vec<&'a Written>,
     controllers: Vec<Controller<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pil: Option<Pil<'a>>,
     warnings: Vec<Place<'a>>,
+}
+
+/// How the controllers compare with those on a board. Bits are texts: not every reader has integers of 64 bits.
+#[derive(Serialize)]
+struct Pil<'a> {
+    board: &'static str,
+    samples: u64,
+    differing_samples: u64,
+    first_difference: Option<FirstDifference<'a>>,
+    host_hash: String,
+    board_hash: String,
+}
+
+#[derive(Serialize)]
+struct FirstDifference<'a> {
+    controller: &'a str,
+    k: u64,
+    field: &'static str,
+    host: String,
+    board: String,
+}
+
+fn pil(result: &RunResult) -> Option<Pil<'_>> {
+    let (all, name) = Compared::all(result)?;
+    let first = |d: Difference| FirstDifference {
+        controller: name.unwrap_or_default(),
+        k: d.k,
+        field: d.field,
+        host: format!("{:#x}", d.host),
+        board: format!("{:#x}", d.board),
+    };
+    Some(Pil {
+        board: all.on.name,
+        samples: all.samples,
+        differing_samples: all.differing,
+        first_difference: all.first.map(first),
+        host_hash: format!("{:016x}", all.host_hash),
+        board_hash: format!("{:016x}", all.board_hash),
+    })
 }
 
 /// A file that a run has written.
@@ -169,6 +211,7 @@ fn run<'a>(chapter: &Chapter<'a>, index: usize, files: &'a [Written]) -> Run<'a>
         precision: precision_name(chapter.precision),
         files: files.iter().filter(|file| file.run.is_none_or(|run| run == index)).collect(),
         controllers: controllers.collect(),
+        pil: pil(chapter.result),
         warnings: places(chapter.name, chapter.text, chapter.warnings).chain(remarks).collect(),
     }
 }

@@ -1,6 +1,7 @@
 //! The table of a run, for people: one block per stretch of time, one line per controller.
 
 use super::{Chapter, precision_name};
+use crate::pil::{Compared, Difference};
 use crate::simulate::{EventKind, Metrics, RunResult};
 
 pub(crate) const COLUMNS: [&str; 6] = ["IAE", "ISE", "ITAE", "IE", "e_max", "TV"];
@@ -53,12 +54,27 @@ pub fn run_table(chapter: &Chapter<'_>) -> String {
     text.push_str("\nIAE, IE [y s], ISE [y^2 s], ITAE [y s^2], e_max [y], TV [u]");
     text.push_str(if result.controllers.len() > 1 { "; * is the best of its column\n" } else { "\n" });
     text.push_str("IE is the sum over the samples, the others are of the error between the samples, too\n");
+    text.push_str(&board(result));
     let remarks: Vec<String> = remarks(result).map(|(name, text)| format!("  {name}: {text}\n")).collect();
     if !remarks.is_empty() {
         text.push_str("\nremarks:\n");
         text.extend(remarks);
     }
     text
+}
+
+/// How the controllers compare with those on the board; empty when there was none.
+fn board(result: &RunResult) -> String {
+    let Some((all, name)) = Compared::all(result) else { return String::new() };
+    let Compared { on, samples, differing, first, host_hash, board_hash } = all;
+    let head = format!("\non {} ({}, emulated): {samples} samples, ", on.name, on.core);
+    let hashes = format!("  hash of all outputs: here {host_hash:016x}, on the board {board_hash:016x}\n");
+    let Some(first) = first else { return format!("{head}no bit differs\n{hashes}") };
+    let Difference { k, field, host, board } = first;
+    let name = name.unwrap_or_default();
+    format!(
+        "{head}{differing} differ\n{hashes}  first: controller `{name}`, sample {k}, {field}: here {host:#x}, on the board {board:#x}\n"
+    )
 }
 
 /// Every remark on the run with the name of its controller.

@@ -99,17 +99,16 @@ impl<T: Real> AnyLaw<T> {
             Block::Adrc { law, state } => law.settle(state, r0, y0, u0),
             Block::Compensated { law, state } => law.settle(state, r0, y0, u0),
         }
-        // A settled state is in Auto. To change to these modes takes a sample of its own, which would swallow a set-point
-        // that steps with the first one, or follow it once more; at rest it moves nothing.
-        if matches!(mode, Mode::Cascade | Mode::Hold) {
-            let _ = self.step(&ControllerInput {
-                r: r0,
-                r_remote: r0,
-                y: y0,
-                mode,
-                ..ControllerInput::default()
-            });
+        if let Some(input) = Self::sample_at_rest(mode, r0, y0) {
+            let _ = self.step(&input);
         }
+    }
+
+    /// The sample before the first one. A settled state is in Auto: to change to these modes takes a sample of its own,
+    /// which would swallow a set-point that steps with the first one, or follow it once more; at rest it moves nothing.
+    pub(super) fn sample_at_rest(mode: Mode, r0: T, y0: T) -> Option<ControllerInput<T>> {
+        let late = matches!(mode, Mode::Cascade | Mode::Hold);
+        late.then(|| ControllerInput { r: r0, r_remote: r0, y: y0, mode, ..ControllerInput::default() })
     }
 
     /// One sample.
@@ -134,6 +133,23 @@ impl<T: Real> AnyLaw<T> {
             Block::Plain { law, state } => law.advance(state, n),
             Block::Adrc { law, state } => law.advance(state, n),
             Block::Compensated { law, state } => law.advance(state, n),
+        }
+    }
+
+    /// The state as words, checksum last; empty if it has too many for a snapshot.
+    pub(crate) fn save(&self) -> Vec<u32> {
+        macro_rules! words {
+            ($law:expr, $state:expr, $type:ty) => {{
+                let mut words = vec![0; <$type>::snapshot_words($state)];
+                let used = $law.save($state, &mut words).unwrap_or(0);
+                words.truncate(used);
+                words
+            }};
+        }
+        match &self.block {
+            Block::Plain { law, state } => words!(law, state, Controller<T, NoCompensator>),
+            Block::Adrc { law, state } => words!(law, state, Controller<T, NoCompensator, Adrc<T>>),
+            Block::Compensated { law, state } => words!(law, state, Controller<T, Compensated<T>>),
         }
     }
 

@@ -12,6 +12,7 @@ mod remarks;
 mod run;
 mod secondary;
 mod sensor;
+mod shadowed;
 mod single;
 mod stretches;
 

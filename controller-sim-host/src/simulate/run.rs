@@ -6,6 +6,7 @@ use super::record::{Record, View};
 use super::remarks::Remark;
 use super::single::run_one;
 use super::stretches::Stretch;
+use crate::pil::{Compared, LinkError, Target};
 use crate::scenario::Scenario;
 use controller_core::{ConfigErrors, Mode, Status};
 use rayon::prelude::*;
@@ -29,6 +30,8 @@ pub struct RunOptions {
     pub trace: bool,
     /// Record this part, for a picture.
     pub record: Option<View>,
+    /// Run the controllers on this board, too, and compare.
+    pub pil: Option<&'static Target>,
 }
 
 /// One sample of one controller.
@@ -85,6 +88,8 @@ pub struct ControllerResult {
     pub inner: Option<Record>,
     /// What to know before trusting the figures: fallbacks, saturation, an error that does not die out.
     pub remarks: Vec<Remark>,
+    /// How it compares with the same controller on the board, when it ran there, too.
+    pub pil: Option<Compared>,
 }
 
 /// The result of a run, controllers in the order of the scenario.
@@ -109,6 +114,13 @@ pub enum RunError {
         /// The set-point asked for \[y\].
         setpoint: f64,
     },
+    /// The board that a controller runs on cannot be asked.
+    Board {
+        /// The controller's index.
+        index: usize,
+        /// What is wrong with it.
+        error: LinkError,
+    },
     /// It was stopped from outside.
     Stopped,
 }
@@ -120,6 +132,7 @@ impl std::fmt::Display for RunError {
             Self::NoRest { setpoint } => {
                 write!(f, "a plant with a zero at s = 0 cannot rest at the set-point {setpoint}")
             }
+            Self::Board { index, error } => write!(f, "controller {}: {error}", index + 1),
             Self::Stopped => f.write_str("stopped"),
         }
     }

@@ -1,16 +1,17 @@
 //! The loop inside of a cascade.
 
 use super::closed_loop::ClosedLoop;
-use super::law::AnyLaw;
+use super::shadowed::{NotBuilt, Shadowed};
+use crate::pil::Target;
 use crate::scenario::{ControllerSpec, Signal};
-use controller_core::{ConfigErrors, ControllerInput, ControllerOutput, Mode, Real, Status};
+use controller_core::{ControllerInput, ControllerOutput, Mode, Real, Status};
 use controller_design::model::TransferFunction;
 
 /// A secondary controller on the part of the plant that the actuator drives first. The whole plant is simulated beside
 /// it, with the same input: by linearity the outer part then sees exactly what this part gives.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Secondary<T: Real> {
-    law: AnyLaw<T>,
+    pub(super) law: Shadowed<T>,
     input: ControllerInput<T>,
     pub(super) output: ControllerOutput<T>,
     pub(super) plant: ClosedLoop,
@@ -24,6 +25,8 @@ pub(super) struct Timing {
     pub(super) ts: f64,
     pub(super) latency: f64,
     pub(super) substeps: usize,
+    /// Where it runs besides here.
+    pub(super) pil: Option<&'static Target>,
 }
 
 impl<T: Real> Secondary<T> {
@@ -34,13 +37,13 @@ impl<T: Real> Secondary<T> {
         timing: Timing,
         (d0, u0): (f64, f64),
         disturbances: &[(f64, Signal)],
-    ) -> Result<Option<Self>, ConfigErrors> {
-        let Timing { ts, latency, substeps } = timing;
+    ) -> Result<Option<Self>, NotBuilt> {
+        let Timing { ts, latency, substeps, pil } = timing;
         let y0 = if part.integrators() > 0 { 0.0 } else { part.gain() * (u0 + d0) };
         let Some((plant, _)) = ClosedLoop::new(part, ts, latency, substeps, (y0, d0), disturbances) else {
             return Ok(None);
         };
-        let mut law = AnyLaw::<T>::new(spec, ts, latency, spec.needed_capacity(ts, latency))?;
+        let mut law = Shadowed::<T>::new(spec, ts, latency, spec.needed_capacity(ts, latency), pil)?;
         law.settle(Mode::Cascade, y0, y0, u0);
         let r = T::from_f64(y0);
         let input = ControllerInput { r, r_remote: r, mode: Mode::Cascade, ..ControllerInput::default() };

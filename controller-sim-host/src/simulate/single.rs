@@ -4,13 +4,14 @@ use super::actuator::Positioner;
 use super::closed_loop::ClosedLoop;
 use super::control::{Control, Sink};
 use super::curve::Curve;
-use super::law::AnyLaw;
 use super::record::Record;
 use super::remarks::Watch;
 use super::run::{ControllerResult, InnerSample, RunError, RunOptions, Sample};
 use super::secondary::{Secondary, Timing};
 use super::sensor::{Measuring, Replay};
+use super::shadowed::{NotBuilt, Shadowed};
 use super::stretches::{Stretches, sample_of};
+use crate::pil::{Compared, LinkError, Target};
 use crate::scenario::{Change, ControllerSpec, Scenario, Signal};
 use controller_core::{ConfigErrors, ControllerInput, ControllerOutput, Mode, Quality, Real, Status};
 
@@ -20,7 +21,7 @@ const CHECKED_EVERY: u64 = 4096;
 /// The loop of one controller, and what the events have made of its inputs.
 struct Loop<T: Real> {
     ts: f64,
-    law: AnyLaw<T>,
+    law: Shadowed<T>,
     input: ControllerInput<T>,
     output: ControllerOutput<T>,
     secondary: Option<Secondary<T>>,
@@ -51,8 +52,16 @@ struct Now {
 }
 
 impl<T: Real> Loop<T> {
-    fn new(scenario: &Scenario, index: usize, spec: &ControllerSpec) -> Result<Self, RunError> {
-        let refused = |faults| RunError::Controller { index, faults: Box::new(faults) };
+    fn new(
+        scenario: &Scenario,
+        index: usize,
+        spec: &ControllerSpec,
+        pil: Option<&'static Target>,
+    ) -> Result<Self, RunError> {
+        let refused = |why| match why {
+            NotBuilt::Refused(faults) => RunError::Controller { index, faults: Box::new(faults) },
+            NotBuilt::Board(error) => RunError::Board { index, error },
+        };
         let (ts, initial) = (scenario.ts, scenario.initial);
         let no_rest = RunError::NoRest { setpoint: initial.setpoint };
         let disturbances = signals(scenario, index, |change| match change {
@@ -65,13 +74,14 @@ impl<T: Real> Loop<T> {
             .ok_or_else(|| no_rest.clone())?;
         let secondary = match (&spec.secondary, &scenario.inner_plant) {
             (Some(inner), Some(part)) => {
-                let timing = Timing { ts, latency, substeps };
+                let timing = Timing { ts, latency, substeps, pil };
                 let built = Secondary::new(inner, part, timing, (initial.disturbance, u0), &disturbances);
                 Some(built.map_err(refused)?.ok_or(no_rest)?)
             }
             _ => None,
         };
-        let mut law = AnyLaw::<T>::new(spec, ts, latency, capacity(scenario, index)).map_err(refused)?;
+        let memory = capacity(scenario, index);
+        let mut law = Shadowed::<T>::new(spec, ts, latency, memory, pil).map_err(refused)?;
         let own_u0 = secondary.as_ref().map_or(u0, |inner| inner.y0);
         law.settle(spec.mode, initial.setpoint, initial.setpoint, own_u0);
 
@@ -171,6 +181,23 @@ impl<T: Real> Loop<T> {
         Now { r, exact, y, before, applied, lost, inner }
     }
 
+    /// Why a board cannot be asked any more.
+    #[inline]
+    fn failure(&self) -> Option<&LinkError> {
+        let inner = self.secondary.as_ref().and_then(|inner| inner.law.failure());
+        self.law.failure().or(inner)
+    }
+
+    /// How the controllers compare with those on the board: the primary one, then the secondary one.
+    fn finish(self) -> Result<Option<Compared>, LinkError> {
+        let inner = self.secondary.map(|inner| inner.law.finish()).transpose()?.flatten();
+        let own = self.law.finish()?;
+        Ok(match (own, inner) {
+            (Some(own), Some(inner)) => Some(own.and(inner)),
+            (own, _) => own,
+        })
+    }
+
     fn step(&mut self, local: f64, remote: f64, y: f64, bad: bool) {
         let input = &mut self.input;
         input.r = T::from_f64(local);
@@ -231,7 +258,7 @@ pub(super) fn run_one<T: Real>(
 ) -> Result<ControllerResult, RunError> {
     let spec = &scenario.controllers[index];
     let ts = scenario.ts;
-    let mut control_loop = Loop::<T>::new(scenario, index, spec)?;
+    let mut control_loop = Loop::<T>::new(scenario, index, spec, options.pil)?;
     let mut disturbance = Curve::new(
         scenario.initial.disturbance,
         &signals(scenario, index, |change| match change {
@@ -276,6 +303,9 @@ pub(super) fn run_one<T: Real>(
             pause = events.peek().map_or(look, |(due, _)| look.min(*due));
         }
         let now = control_loop.sample(k as f64);
+        if let Some(error) = control_loop.failure() {
+            return Err(RunError::Board { index, error: error.clone() });
+        }
         let e = now.r - now.exact;
         let automatic = control_loop.output.mode.is_automatic();
         stretches.sample(t, ts, e, now.before, control_loop.u);
@@ -322,7 +352,8 @@ pub(super) fn run_one<T: Real>(
     let (events, total) = stretches.finish();
     let remarks = watch.finish(scenario.noise.map_or(0.0, |n| n.std));
     let name = spec.name.clone();
-    Ok(ControllerResult { name, events, total, trace: samples, record, inner: inner_record, remarks })
+    let pil = control_loop.finish().map_err(|error| RunError::Board { index, error })?;
+    Ok(ControllerResult { name, events, total, trace: samples, record, inner: inner_record, remarks, pil })
 }
 
 /// The signals of one kind that concern a controller, with their times, in order.

@@ -15,6 +15,7 @@ mod interrupt;
 mod page_words;
 mod pages;
 mod parquet;
+mod pil;
 mod reproduced;
 mod runs;
 mod same_bytes;
