@@ -14,6 +14,7 @@
 //! | [`rungs`] | what each rung of the ladder does |
 //! | [`report`] | the rung that opens the program's pages in a browser |
 //! | [`memory`] | the memory of long runs |
+//! | [`pil`] | controllers on emulated boards: the same bits, round trips a second |
 //! | [`mod@bench`] | the speed of the simulation and of the tuning rules, beside Python |
 //! | [`long_runs`] | scenarios of any length for these |
 //! | [`board_demo`] | the demo of the firmware, whose log is committed |
@@ -36,6 +37,7 @@ mod manifest;
 mod memory;
 mod no_panic;
 mod packages;
+mod pil;
 mod report;
 mod rungs;
 mod same_bits;
@@ -171,7 +173,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
             Ok(())
         }
         Request::Soak { minutes } => soak(root, minutes),
-        Request::Bench => bench::run(root),
+        Request::Bench => bench::run(root).and(pil::bench(root)),
         Request::Size(then) => size::run(root, then).map(|remark| println!("{remark}")),
         Request::Docs => rungs::docs(root),
         Request::Fix => Cmd::cargo(root).args(["fmt", "--all"]).run(),
@@ -184,6 +186,7 @@ fn soak(root: &Path, minutes: u64) -> Outcome {
     Cmd::cargo(root).env("SOAK", "1").args(["test", "--release", "-p", "controller-tests"]).run()?;
     same_bits::soak(root)?;
     swap::soak(root)?;
+    pil::soak(root)?;
     let program = rungs::program(root)?;
     memory::soak(&program, &rungs::TempFolder::new("soak")?.0)?;
     if minutes == 0 {

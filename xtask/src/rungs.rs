@@ -9,6 +9,7 @@ use crate::fuzz;
 use crate::ladder::{Done, Rung};
 use crate::manifest::Manifest;
 use crate::no_panic;
+use crate::pil;
 use crate::report;
 use crate::same_bits;
 use crate::setup::{self, Part, Toolchain};
@@ -17,7 +18,7 @@ use crate::size;
 use crate::swap;
 
 /// All rungs, in order.
-pub(crate) const RUNGS: [Rung; 17] = [
+pub(crate) const RUNGS: [Rung; 18] = [
     Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
     Rung { name: "format", about: "sources are formatted", run: format },
     Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
@@ -52,6 +53,7 @@ pub(crate) const RUNGS: [Rung; 17] = [
         run: size::rung,
     },
     Rung { name: "demo", about: "the program without arguments runs its scenario", run: demo },
+    Rung { name: "pil", about: "the same bits on every emulated board", run: pil::rung },
     Rung { name: "report", about: "pages are accessible, offline, legible, small", run: report::rung },
     Rung { name: "fuzz", about: "a bounded run of every fuzz target", run: fuzz_rung },
     Rung { name: "hygiene", about: "files are small, well named and finished", run: hygiene },
