@@ -167,7 +167,7 @@ impl Watch {
                 return self.gone();
             }
             let turn = self.turns.load(Ordering::Relaxed);
-            if turn != last.0 || turn % 2 == 0 {
+            if turn != last.0 || turn.is_multiple_of(2) {
                 last = (turn, Instant::now());
             } else if last.1.elapsed() > LIMIT {
                 self.kill();

@@ -16,14 +16,14 @@ pub(super) struct Shadowed<T: Real> {
 #[derive(Debug)]
 pub(super) enum NotBuilt {
     /// Its configuration is refused.
-    Refused(ConfigErrors),
+    Refused(Box<ConfigErrors>),
     /// The board cannot be asked.
     Board(LinkError),
 }
 
 impl From<ConfigErrors> for NotBuilt {
     fn from(faults: ConfigErrors) -> Self {
-        Self::Refused(faults)
+        Self::Refused(Box::new(faults))
     }
 }
 
@@ -89,8 +89,7 @@ impl<T: Real> Shadowed<T> {
 
     /// How both compare; `None` without a board.
     pub(super) fn finish(self) -> Result<Option<Compared>, LinkError> {
-        let state = |_: &Box<Shadow>| self.law.save();
-        let state = self.shadow.as_ref().map(state).unwrap_or_default();
+        let state = if self.shadow.is_some() { self.law.save() } else { Default::default() };
         self.shadow.map(|shadow| shadow.finish(&state)).transpose()
     }
 }

@@ -59,7 +59,7 @@ impl<T: Real> Loop<T> {
         pil: Option<&'static Target>,
     ) -> Result<Self, RunError> {
         let refused = |why| match why {
-            NotBuilt::Refused(faults) => RunError::Controller { index, faults: Box::new(faults) },
+            NotBuilt::Refused(faults) => RunError::Controller { index, faults },
             NotBuilt::Board(error) => RunError::Board { index, error },
         };
         let (ts, initial) = (scenario.ts, scenario.initial);
