@@ -1,17 +1,14 @@
 //! All tuning rules on one plant, side by side.
 
-use crate::design_file;
-use crate::scenario::read;
-use crate::simulate::{Precision, RunOptions, run};
+use crate::design_run::run_design;
 use controller_design::Refusal;
 use controller_design::design::{AdrcGain, Design, Method, Request, design};
 use controller_design::model::TransferFunction;
 
 /// Delay margin in samples below which a sampling period is too long.
 const FEW_SAMPLES: f64 = 10.0;
-/// Longest window of the comparison, and longest one with steps between the samples, in samples.
+/// Longest window of the comparison, in samples.
 const LONGEST: f64 = 2e5;
-const FINE: f64 = 2e4;
 /// Delay margin in samples above which it could be much longer.
 const MANY_SAMPLES: f64 = 200.0;
 
@@ -51,6 +48,8 @@ pub struct Outcome {
     pub iae_setpoint: f64,
     /// The same after a unit step of the load at the plant's input \[y s\].
     pub iae_load: f64,
+    /// Why these figures may lack a part.
+    pub warnings: Vec<String>,
 }
 
 impl Outcome {
@@ -127,24 +126,21 @@ pub fn advise(plant: &TransferFunction, ts: f64, request: impl Fn(Method) -> Req
     }
 }
 
-const UNSETTLED: Refusal =
-    Refusal::NoSolution { why: "the simulated loop does not come to rest", help: "choose a shorter ts" };
+const UNSETTLED: Refusal = Refusal::NoSolution {
+    why: "the simulated loop runs into a limit or a fallback, or does not come to rest",
+    help: "choose a shorter ts",
+};
 
-/// Runs the loop of a design by its own design file.
+/// What comes of a design by its own design file. Where its whole window is simulated the loop must be at rest at its end.
 fn simulated(made: Design) -> Option<Outcome> {
-    let mut file = design_file::of(&made, None, "");
-    file.window = file.window.min(LONGEST * made.ts);
-    let mut scenario = read(&file.text(), Precision::F64).ok()?.scenario;
-    if file.window > FINE * made.ts {
-        // So many samples show the response between them, too.
-        scenario.substeps = 1;
+    let run = run_design(&made, LONGEST)?;
+    if run.cut.is_none() && !run.troubles.is_empty() {
+        return None;
     }
-    let result = run(&scenario, RunOptions::default()).ok()?;
-    let events = &result.controllers.first()?.events;
-    let [setpoint, load] = [events.first()?, events.get(1)?].map(|stretch| stretch.metrics.iae);
-    (setpoint.is_finite() && load.is_finite()).then_some(Outcome {
+    Some(Outcome {
         design: made,
-        iae_setpoint: setpoint,
-        iae_load: load,
+        iae_setpoint: run.iae_setpoint,
+        iae_load: run.iae_load,
+        warnings: run.cut.into_iter().chain(run.troubles).collect(),
     })
 }

@@ -1,6 +1,7 @@
 //! From a recorded step to a tuned loop.
 
 use crate::design_file;
+use crate::quiet;
 use crate::scenario::{DesignFile, Units};
 use controller_design::Refusal;
 use controller_design::design::{Design, Law, Request, design_with_areas};
@@ -11,8 +12,6 @@ use controller_design::model::{Polynomial, Sopdt, TransferFunction};
 
 /// A lag below this share of the sampling period counts as dead time.
 const FAST_LAG: f64 = 0.05;
-/// Share of the output's range that noise may move it by without a warning.
-const QUIET: f64 = 0.05;
 /// Share of the recorded change of the input that the load of the design file steps by.
 const LOAD: f64 = 0.2;
 
@@ -144,6 +143,7 @@ fn file(found: &Identified, made: &Design, known: &Known) -> DesignFile {
     // What a converter rounds away is no noise of its own.
     file.noise = if found.sigma > 0.5 * found.quantisation { rounded(found.sigma) } else { 0.0 };
     file.resolution = rounded(found.quantisation);
+    design_file::widen(&mut file, made, known.limits);
     file
 }
 
@@ -157,19 +157,18 @@ fn warnings(recording: &Recording<'_>, found: &Identified, made: &Design, known:
     let (lo, hi) = known.limits.unwrap_or_else(|| {
         recording.u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), u| (lo.min(*u), hi.max(*u)))
     });
-    let gain =
-        made.noise.kpidn.unwrap_or(0.0).max(made.noise.kden.unwrap_or(0.0)).max(made.noise.an.unwrap_or(0.0));
-    let gain = if gain > 0.0 { gain } else { made.sampled.noise.controller };
     let of = if known.limits.is_some() { "its range" } else { "the range it was recorded in" };
-    for (what, size) in
-        [("one step of the measurement", found.quantisation), ("its noise (one sigma)", found.sigma)]
-    {
-        let share = size * gain / (hi - lo);
-        if share > QUIET && share.is_finite() {
+    let gains = &made.sampled.noise;
+    let [step, sigma] = [found.quantisation, found.sigma];
+    for (what, size, moved) in [
+        ("one step of the measurement", step, quiet::by_step(gains, step)),
+        ("its noise (one sigma)", sigma, quiet::by_noise(gains.white, sigma)),
+    ] {
+        if let Some(share) = quiet::share(moved, (lo, hi)).filter(|share| *share > quiet::QUIET) {
             list.push(format!(
-                "{what}, {}, times the noise gain {} moves the output by {:.0} % of {of}: {}",
+                "{what}, {}, times the noise gain {} of the whole controller moves the output by {:.0} % of {of}: {}",
                 crate::scenario::show_short(size),
-                crate::scenario::show_short(gain),
+                crate::scenario::show_short(moved / size),
                 100.0 * share,
                 calmer(made)
             ));
@@ -181,6 +180,7 @@ fn warnings(recording: &Recording<'_>, found: &Identified, made: &Design, known:
             100.0 * found.kp_spread.min(9.99)
         ));
     }
+    list.extend(design_file::cut(made));
     let recorded =
         recording.u.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), u| (lo.min(*u), hi.max(*u)));
     if let Some((lo, hi)) = known.limits

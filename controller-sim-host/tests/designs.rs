@@ -171,3 +171,66 @@ fn wishes_are_heard() {
     assert!(made(plant, &Request { ts: f64::NAN, ..dob }).is_none());
     assert!(made(plant, &Request { ms: Some(0.5), ..dob }).is_none());
 }
+
+/// Signals beyond the default ranges of 1e6: the file has wider ones, and unit steps as long as they fit into 1e12.
+#[test]
+fn large_signals_are_neither_limited_nor_bad() {
+    for (gain, is_unit) in [("1e9", true), ("-1e-9", true), ("1e12", false), ("-1e-12", false)] {
+        for method in Method::ALL {
+            let plant = format!("{gain}*exp(-0.3*s)/((1+0.7*s)*(1+1.3*s))");
+            let Some(made) = made(&plant, &Request::new(method, 0.02)) else { continue };
+            let file = design_file::of(&made, None, "a test");
+            let what = format!("{plant}, {}", method.name());
+            assert_eq!((file.setpoint_step, file.load_step) == (1.0, 1.0), is_unit, "{what}");
+            let scenario = read(&file.text(), Precision::F64).expect("a scenario").scenario;
+            let result = run(&scenario, RunOptions::default()).expect("a run");
+            assert!(result.controllers[0].remarks.is_empty(), "{what}: {:?}", result.controllers[0].remarks);
+            let [setpoint, load] = events(&scenario);
+            for (metrics, step, unit) in [
+                (&setpoint, file.setpoint_step, made.predicted.ie_setpoint),
+                (&load, file.load_step, made.predicted.ie_load),
+            ] {
+                let expected = unit.expect("a prediction") * step;
+                // What is left of the set-point's response is much beside a load's of a small gain.
+                let before = LEFT * setpoint.iae;
+                assert!(
+                    (metrics.ie - expected).abs() <= 2e-5 * metrics.iae.max(expected.abs()) + before,
+                    "{what}: {} instead of {expected}",
+                    metrics.ie
+                );
+            }
+        }
+    }
+    let plain = made("exp(-0.033*s)/(1+s)^3", &Request::new(Method::Momi, 0.01)).expect("a design");
+    let text = design_file::of(&plain, None, "a test").text();
+    assert!(!text.contains("limits = ") && !text.contains("measurement = "), "{text}");
+}
+
+/// A pair of poles with a damping of 0.1 decays ten times slower than it swings.
+#[test]
+fn a_lightly_damped_plant_is_run_until_it_rests() {
+    for plant in ["1/(1+0.2*s+s^2)", "-3/(1+0.05*s+s^2)", "exp(-0.1*s)/((1+0.02*s+s^2)*(1+0.5*s))"] {
+        let Some(made) = made(plant, &Request::new(Method::Momi, 0.02)) else { continue };
+        let [setpoint, load] = events(&scenario(&made));
+        for (metrics, unit) in [(setpoint, made.predicted.ie_setpoint), (load, made.predicted.ie_load)] {
+            let expected = unit.expect("a prediction");
+            assert!(
+                (metrics.ie - expected).abs() <= 1e-4 * metrics.iae.max(expected.abs()),
+                "{plant}: {} instead of {expected}",
+                metrics.ie
+            );
+        }
+    }
+    assert!(made("1/(1+0.2*s+s^2)", &Request::new(Method::Momi, 0.02)).is_some());
+}
+
+/// A window of 2e6 samples is the longest; a shorter one than the response needs is said.
+#[test]
+fn a_window_that_is_cut_is_said() {
+    let of = |ts| made("exp(-0.1*s)/((1+s)*(1+0.5*s))", &Request::new(Method::Momi, ts)).expect("a design");
+    assert_eq!(design_file::cut(&of(1e-3)), None);
+    let long = of(1e-6);
+    let said = design_file::cut(&long).expect("a warning");
+    assert!(said.contains("2e6") || said.contains("2000000"), "{said}");
+    assert!(design_file::of(&long, None, "").text().contains(&format!("# note: {said}")));
+}

@@ -6,6 +6,7 @@ use super::wish::{flag, usual_period};
 use super::{EXIT_REFUSED, Failure, print};
 use crate::advise::advise;
 use crate::design_file;
+use crate::design_run::run_file;
 use crate::output::{self, FileTarget, Problem, Trouble};
 use crate::scenario::{Fault, SourceText, code};
 use controller_design::Refusal;
@@ -43,22 +44,25 @@ pub(super) fn run(arguments: &DesignArguments, json: bool, command: &str) -> Res
     let target = arguments.save.as_ref().map(|path| FileTarget::new(path, arguments.force)).transpose()?;
     let request = arguments.wish.request(method, ts, None);
     let made = design(&plant, &request).map_err(|refusal| with_remedies(&plant, &request, &refusal))?;
+    let mut file = design_file::of(&made, arguments.wish.limits, command);
+    if let Some(name) = &arguments.wish.name {
+        file.controller.name.clone_from(name);
+    }
     if let Some(target) = &target {
-        let mut file = design_file::of(&made, arguments.wish.limits, command);
-        if let Some(name) = &arguments.wish.name {
-            file.controller.name.clone_from(name);
-        }
         target.write(|to| to.write_all(file.text().as_bytes())).map_err(Failure::internal)?;
     }
+    // A file that is kept is tried; the least IAE is that of the continuous loop, and people want that of theirs.
+    let is_tried = target.is_some() || made.predicted.iae_load.is_some();
+    let tried = is_tried.then(|| run_file(&made, file, f64::INFINITY)).flatten();
     let saved = target.map(|target| target.path().display().to_string());
     if json {
-        return Ok(print(&output::design_json(&made, saved.as_deref()))?);
+        return Ok(print(&output::design_json(&made, tried.as_ref(), saved.as_deref()))?);
     }
     let next = match saved.map(|path| quoted(&path)) {
         Some(path) => format!("\nwrote {path}; run it with: controller-sim run {path}\n"),
         None => "\nadd `--save loop.toml` for a file that `run` and `analyze` read\n".to_owned(),
     };
-    Ok(print(&(output::design_table(&made) + &next))?)
+    Ok(print(&(output::design_table(&made, tried.as_ref()) + &next))?)
 }
 
 /// The plant of the command line.

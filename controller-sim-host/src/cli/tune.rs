@@ -9,6 +9,7 @@ use super::wish::{Wish, positive};
 use super::{Failure, colours, examples, print};
 use crate::advise::advise;
 use crate::analysis::analyse;
+use crate::design_run::{run_design, troubles};
 use crate::log::Log;
 use crate::output::is_same_file;
 use crate::output::{
@@ -92,10 +93,15 @@ pub(super) fn run(arguments: &TuneArguments, json: bool, command: &str) -> Resul
         |target: &Option<FileTarget>| target.as_ref().map(|target| target.path().display().to_string());
     let (saved, drawn) = (path(&save), path(&page));
     let simulated = Simulated::new(&tuned, saved.as_deref().unwrap_or("loop.toml"))?;
+    let mut warnings = tuned.warnings.clone();
+    warnings.extend(troubles(&simulated.result.controllers[0], &tuned.file));
+    let has_iae = tuned.made.predicted.iae_load.is_some();
+    let unit_steps = has_iae.then(|| run_design(&tuned.made, f64::INFINITY)).flatten();
     let tuning = Tuning {
         finding,
         made: &tuned.made,
-        warnings: &tuned.warnings,
+        warnings: &warnings,
+        iae_load: unit_steps.map(|run| run.iae_load),
         events: simulated.events,
         worst_residual: tuned.worst_residual(&recording),
         order: tuned.found.fit.filter(|_| tuned.on_fit).map_or(2, |fit| fit.order),

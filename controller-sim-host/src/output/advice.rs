@@ -29,6 +29,9 @@ pub fn advice_table(advice: &Advice) -> String {
                 if made.design.sampled.margins.ms > ROBUST {
                     shown[2].push('!');
                 }
+                if !made.warnings.is_empty() {
+                    shown[..2].iter_mut().for_each(|cell| cell.push('*'));
+                }
                 line(format!("  {name:<9}{}", cells(shown)));
             }
             Err(_) => line(format!("  {name:<9}{:>11}", "refused")),
@@ -48,6 +51,9 @@ pub fn advice_table(advice: &Advice) -> String {
             .to_owned(),
     );
     line("! little robustness: Ms above 2; `--ms-max 2` slows the block of de-momi and dob down".to_owned());
+    if advice.rows.iter().flat_map(|row| &row.outcome).any(|made| !made.warnings.is_empty()) {
+        line("* may lack a part, see below".to_owned());
+    }
     line(format!("\n{}", advice.on_the_period()));
     for note in advice.on_the_options() {
         line(note);
@@ -56,7 +62,10 @@ pub fn advice_table(advice: &Advice) -> String {
     for row in &advice.rows {
         let name = row.method.name();
         let said = match &row.outcome {
-            Ok(_) => format!("{}{}", row.method.when(), noisy(advice, row)),
+            Ok(made) => {
+                let warnings: String = made.warnings.iter().map(|text| format!("; * {text}")).collect();
+                format!("{}{}{warnings}", row.method.when(), noisy(advice, row))
+            }
             Err(refusal) => format!("refused: {refusal}; {}", refusal.help()),
         };
         for (index, part) in wrapped(&said, 86).into_iter().enumerate() {
@@ -121,6 +130,7 @@ struct Entry<'a> {
     delay_margin_samples: Option<f64>,
     noise_over_least: Option<f64>,
     design: Option<Designed<'a>>,
+    warnings: &'a [String],
     refused: Option<String>,
     help: Option<&'static str>,
 }
@@ -147,7 +157,8 @@ fn entry<'a>(advice: &Advice, row: &'a Row) -> Entry<'a> {
         iae_load: made.map(|made| made.iae_load),
         delay_margin_samples: made.map(Outcome::delay_margin_samples),
         noise_over_least: advice.noise_over_least(row).map(|(ratio, _)| ratio),
-        design: made.map(|made| Designed::new(&made.design, None)),
+        design: made.map(|made| Designed::new(&made.design, Some(made.iae_load), &[], None)),
+        warnings: made.map_or(&[], |made| &made.warnings),
         refused: refusal.map(ToString::to_string),
         help: refusal.map(|refusal| refusal.help()),
     }

@@ -1,15 +1,32 @@
 //! A design for people: what was designed, what it promises, what to do with it.
 
 use super::table::{format_number, rounded_numbers};
+use crate::design_run::DesignRun;
 use crate::scenario::show_short;
 use controller_core::PidConfig;
 use controller_design::areas::Areas;
 use controller_design::design::{Design, Law, RuleModel};
 use std::fmt::Write;
 
-/// What was designed as text, at most 100 columns wide.
+/// Share of the IAE from which that of the sampled loop and that of the continuous one are two.
+const DIFFERENT: f64 = 0.005;
+
+/// What was designed as text, at most 100 columns wide, and what its run showed where there was one.
 #[must_use]
-pub fn design_table(made: &Design) -> String {
+pub fn design_table(made: &Design, run: Option<&DesignRun>) -> String {
+    let mut text = designed_table(made, run.map(|run| run.iae_load));
+    let notes = run.map_or(Vec::new(), DesignRun::notes);
+    if !notes.is_empty() {
+        text.push_str("\nwarnings\n");
+        for note in notes {
+            line(&mut text, format_args!("  {note}"));
+        }
+    }
+    text
+}
+
+/// The design alone; `iae_load` is of the sampled loop.
+pub(super) fn designed_table(made: &Design, iae_load: Option<f64>) -> String {
     let mut text = format!("{} for {}\n", made.method.title(), rounded_numbers(&made.plant.to_string()));
     let latency = if made.latency > 0.0 { format!(", latency {} s", made.latency) } else { String::new() };
     line(&mut text, format_args!("{}, ts = {} s{latency}", made.method.source(), made.ts));
@@ -24,7 +41,7 @@ pub fn design_table(made: &Design) -> String {
         line(&mut text, format_args!("  {:<22}{}", "areas A0..A5", list(areas)));
     }
     margins(&mut text, made);
-    predicted(&mut text, made);
+    predicted(&mut text, made, iae_load);
     if !made.warnings.is_empty() {
         text.push_str("\nnotes\n");
         for warning in &made.warnings {
@@ -146,11 +163,17 @@ fn number(x: f64) -> String {
     if x == f64::INFINITY { "none".to_owned() } else { format_number(x) }
 }
 
-fn predicted(text: &mut String, made: &Design) {
+/// The integrals: the closed forms hold for the sampled loop, the least IAE of a rule for the continuous one.
+fn predicted(text: &mut String, made: &Design, iae_load: Option<f64>) {
+    let continuous = made.predicted.iae_load;
+    let sampled = continuous.and(iae_load);
+    let is_same = |(one, two): (f64, f64)| (one / two - 1.0).abs() <= DIFFERENT;
+    let is_same = continuous.zip(sampled).is_some_and(is_same);
     let rows = [
         ("IE, unit set-point step", made.predicted.ie_setpoint),
         ("IE, unit load step", made.predicted.ie_load),
-        ("IAE, unit load step", made.predicted.iae_load),
+        ("IAE, unit load step", sampled),
+        ("  of the continuous loop", continuous.filter(|_| !is_same)),
     ];
     if rows.iter().all(|(_, value)| value.is_none()) {
         return;

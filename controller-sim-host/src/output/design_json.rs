@@ -1,6 +1,7 @@
 //! A design as JSON; the names are those of the files and of the papers.
 
 use super::json::text;
+use crate::design_run::DesignRun;
 use controller_core::{AdrcConfig, EstimatorConfig, ObserverConfig, PidConfig};
 use controller_design::design::{Design, Law, RuleModel};
 use controller_design::margins::{Margins, NoiseGains};
@@ -111,6 +112,7 @@ struct Predicted {
     ie_setpoint: Option<f64>,
     ie_load: Option<f64>,
     iae_load: Option<f64>,
+    iae_load_continuous: Option<f64>,
 }
 
 impl From<&PidConfig> for Pid {
@@ -151,7 +153,13 @@ impl From<&NoiseGains> for SampledNoise {
 }
 
 impl<'a> Designed<'a> {
-    pub(super) fn new(made: &'a Design, saved: Option<&'a str>) -> Self {
+    /// `iae_load` is of the sampled loop, `more` what its run is to be warned of.
+    pub(super) fn new(
+        made: &'a Design,
+        iae_load: Option<f64>,
+        more: &[String],
+        saved: Option<&'a str>,
+    ) -> Self {
         let (pid, estimator, observer, adrc) = match &made.law {
             Law::Pid { pid, estimator, observer } => (Some(pid), estimator.as_ref(), observer.as_ref(), None),
             Law::Adrc(adrc) => (None, None, None, Some(adrc)),
@@ -185,16 +193,18 @@ impl<'a> Designed<'a> {
             predicted: Predicted {
                 ie_setpoint: made.predicted.ie_setpoint,
                 ie_load: made.predicted.ie_load,
-                iae_load: made.predicted.iae_load,
+                iae_load: made.predicted.iae_load.and(iae_load),
+                iae_load_continuous: made.predicted.iae_load,
             },
-            warnings: made.warnings.iter().map(ToString::to_string).collect(),
+            warnings: made.warnings.iter().map(ToString::to_string).chain(more.iter().cloned()).collect(),
             saved,
         }
     }
 }
 
-/// A design: see `schema.json`.
+/// A design, and its run where there was one: see `schema.json`.
 #[must_use]
-pub fn design_json(made: &Design, saved: Option<&str>) -> String {
-    text(&Designed::new(made, saved))
+pub fn design_json(made: &Design, run: Option<&DesignRun>, saved: Option<&str>) -> String {
+    let more = run.map_or(Vec::new(), DesignRun::notes);
+    text(&Designed::new(made, run.map(|run| run.iae_load), &more, saved))
 }

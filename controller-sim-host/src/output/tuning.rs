@@ -1,6 +1,6 @@
 //! A tuned loop: text for people, JSON for programs.
 
-use super::design::design_table;
+use super::design::designed_table;
 use super::design_json::Designed;
 use super::identification::{Identification, Object as Identified, identify_table};
 use super::json::text;
@@ -20,6 +20,9 @@ pub struct Tuning<'a> {
     pub warnings: &'a [String],
     /// The simulated set-point step and load step.
     pub events: [Metrics; 2],
+    /// Predicted integral of the absolute error after a unit step of the load, of the sampled loop \[y s\], where the rule
+    /// looks at it.
+    pub iae_load: Option<f64>,
     /// Largest distance of the response of the loop's model from the record \[y\].
     pub worst_residual: f64,
     /// Number of lags of that model.
@@ -63,7 +66,7 @@ pub fn tune_table(tuning: &Tuning<'_>) -> String {
         tuning.order,
         format_number(tuning.worst_residual)
     ));
-    out.push_str(&design_table(tuning.made));
+    out.push_str(&designed_table(tuning.made, tuning.iae_load));
     let [setpoint, load] = &tuning.events;
     out.push_str(&format!(
         "\nsimulated with noise and resolution of the record\n  {:<30}IAE {:>10}  e_max {:>10}\n  {:<30}IAE {:>10}  e_max {:>10}\n",
@@ -124,7 +127,7 @@ pub fn tune_json(tuning: &Tuning<'_>, saved: Option<&str>, report: Option<&str>)
     text(&Object {
         version: env!("CARGO_PKG_VERSION"),
         identified: Identified::new(&tuning.finding, &[]),
-        design: Designed::new(tuning.made, saved),
+        design: Designed::new(tuning.made, tuning.iae_load, &[], saved),
         worst_residual: tuning.worst_residual,
         setpoint_step: (&tuning.events[0]).into(),
         load_step: (&tuning.events[1]).into(),

@@ -3,8 +3,10 @@
 use super::page::scroll;
 use super::parameters::{Line, lines};
 use crate::analysis::Analysis;
+use crate::design_file::is_open;
 use crate::output::analysis::{Row, rows};
 use crate::output::table::format_number;
+use crate::quiet::{QUIET, by_noise, share};
 use crate::scenario::{ControllerSpec, Scenario, show_short};
 use controller_design::margins::Margins;
 use maud::{Markup, html};
@@ -14,8 +16,6 @@ const MS: f64 = 2.0;
 const GAIN: f64 = 2.0;
 const PHASE: f64 = 30.0;
 const SAMPLES: f64 = 10.0;
-/// Largest share of the output's range that noise may move it by, one standard deviation.
-const QUIET: f64 = 0.05;
 
 /// Parameters and margins of a controller beside each other. `id` is that of the table of the margins, `of` what is spoken.
 pub(super) fn card(
@@ -147,7 +147,7 @@ fn judged((what, unit, ..): &Row, analysis: &Analysis) -> Option<(bool, String)>
 /// How far the noise of the measurement moves the output of the controller.
 fn quiet(scenario: &Scenario, spec: &ControllerSpec, analysis: &Analysis) -> Option<String> {
     let noise = scenario.noise.filter(|noise| noise.std > 0.0)?.std;
-    let moved = noise * analysis.discrete.noise.white;
+    let moved = by_noise(analysis.discrete.noise.white, noise);
     if !moved.is_finite() {
         return None;
     }
@@ -158,13 +158,11 @@ fn quiet(scenario: &Scenario, spec: &ControllerSpec, analysis: &Analysis) -> Opt
         with(noise, &y),
         with(moved, &u)
     );
-    let range = spec.config.limits.hi - spec.config.limits.lo;
+    let limits = &spec.config.limits;
+    let range = share(moved, (limits.lo, limits.hi)).filter(|_| !is_open(limits));
     let is_known =
         lines(&[spec], scenario).iter().filter(|line| line.name.starts_with("output ")).count() >= 2;
-    if !is_known || !range.is_finite() || range <= 0.0 {
-        return Some(format!("{text}."));
-    }
-    let share = moved / range;
+    let Some(share) = range.filter(|_| is_known) else { return Some(format!("{text}.")) };
     let word = if share <= QUIET { "good" } else { "poor" };
     Some(format!(
         "{text}, {} % of its range: {word} (at most {} %).",

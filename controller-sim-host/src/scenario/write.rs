@@ -1,7 +1,7 @@
 //! Design files: a scenario with one controller, as a person would write it.
 
 use super::{CompensatorSpec, ControllerSpec, Units};
-use controller_core::{Action, IntegralRule, LimitConfig, PidConfig};
+use controller_core::{Action, ControllerConfig, IntegralRule, PidConfig};
 use controller_design::model::TransferFunction;
 use std::fmt::Write;
 
@@ -115,10 +115,20 @@ impl DesignFile {
                 push(text, format_args!("observer = {{ model = {model}, alpha = {alpha}{order} }}"));
             }
         }
-        let limits = &spec.config.limits;
-        let (lo, hi) = (LimitConfig::default().lo, LimitConfig::default().hi);
-        if (limits.lo, limits.hi) != (lo, hi) {
-            push(text, format_args!("limits = {}", table(&[("lo", limits.lo), ("hi", limits.hi)])));
+        let (config, usual) = (&spec.config, ControllerConfig::default());
+        let ranges = |config: &ControllerConfig| {
+            [
+                ("limits", config.limits.lo, config.limits.hi),
+                ("setpoint", config.setpoint.lo, config.setpoint.hi),
+                ("measurement", config.measurement_lo, config.measurement_hi),
+                ("offset", config.offset_lo, config.offset_hi),
+            ]
+        };
+        for (range, default) in ranges(config).into_iter().zip(ranges(&usual)) {
+            let (key, lo, hi) = range;
+            if range != default {
+                push(text, format_args!("{key} = {}", table(&[("lo", lo), ("hi", hi)])));
+            }
         }
     }
 }

@@ -241,3 +241,36 @@ fn a_scenario_designs_its_controller() {
         assert!(shown.contains(part) && shown.contains("wrong.toml:"), "`{part}` is not in:\n{shown}");
     }
 }
+
+/// The rule's optimum is that of the continuous loop; the design says the figure of the run, too.
+#[test]
+fn the_least_iae_is_that_of_the_run() {
+    let folder = Folder::new("design-iae");
+    for (index, plant) in ["2*exp(-0.3*s)/(1+0.9*s)", "-0.5*exp(-s)/s"].into_iter().enumerate() {
+        let file = format!("{index}.toml");
+        let arguments = ["design", "--plant", plant, "--method", "pi-iae", "--ts", "0.02"];
+        let made = json(&folder.run(&[&arguments[..], &["--save", &file, "--json"]].concat()));
+        check(&made);
+        let run = json(&folder.run(&["run", &file, "--json"]));
+        let iae = number(&run["controllers"][0]["events"][1]["metrics"]["iae"]);
+        assert!((number(&made["predicted"]["iae_load"]) / iae - 1.0).abs() < 1e-3, "{made}");
+        let more = iae / number(&made["predicted"]["iae_load_continuous"]);
+        assert!(more > 1.005 && more < 1.2, "{plant}: {more}");
+        let shown = folder.done(&arguments);
+        assert!(shown.contains("of the continuous loop"), "{shown}");
+    }
+}
+
+/// What is compared after a cut window is marked.
+#[test]
+fn a_comparison_of_cut_windows_says_so() {
+    let folder = Folder::new("design-cut");
+    let arguments = ["design", "--plant", "1/((1+s)*(1+0.5*s))", "--ts", "5e-5", "--method", "advise"];
+    let made = json(&folder.run(&[&arguments[..], &["--json"]].concat()));
+    check(&made);
+    let methods = made["methods"].as_array().expect("methods");
+    let cut = methods.iter().filter(|row| row["warnings"].to_string().contains("is simulated for"));
+    assert!(cut.count() > 0, "{made}");
+    let shown = folder.done(&arguments);
+    assert!(shown.contains("* may lack a part"), "{shown}");
+}

@@ -211,3 +211,42 @@ fn what_gives_no_loop_is_refused() {
     });
     assert!(warned || quiet["error"].is_object(), "{quiet}");
 }
+
+/// A pressure in Pa, beyond the default range of 1e6: the file has ranges around it.
+#[test]
+fn a_pressure_in_pascal_is_tuned_and_run() {
+    let folder = Folder::new("tune-pascal");
+    let mut text = "time [s],valve [%],pressure [Pa]\n".to_owned();
+    for row in 0..600 {
+        let t = 0.5 * f64::from(row);
+        let x = (t - 22.0).max(0.0);
+        let step = 1.0 - (20.0 * (-x / 20.0).exp() - 6.0 * (-x / 6.0).exp()) / 14.0;
+        text.push_str(&format!("{t:.1},{},{:.0}\n", if t < 20.0 { 40 } else { 50 }, 2.4e6 + 1.5e5 * step));
+    }
+    folder.write("pa.csv", &text);
+    for limits in [&["--limits", "0:100"][..], &[]] {
+        let arguments = [&["tune", "pa.csv", "--save", "pa.toml", "--force", "--json"][..], limits].concat();
+        let tuned = json(&folder.run(&arguments));
+        check(&tuned);
+        assert!(!tuned["warnings"].to_string().contains("fallback"), "{}", tuned["warnings"]);
+        let run = json(&folder.run(&["run", "pa.toml", "--json"]));
+        assert!(run["warnings"].as_array().is_some_and(Vec::is_empty), "{}", run["warnings"]);
+        // The recorded change, 1.5e5 Pa: a dead loop has the whole of it as its error to the end.
+        let iae = number(&run["controllers"][0]["events"][0]["metrics"]["iae"]);
+        assert!(iae > 0.0 && iae < 1.5e5 * 60.0, "{iae}");
+    }
+}
+
+/// A first move into the limit is told from a loop that has room.
+#[test]
+fn a_limit_that_is_reached_is_said() {
+    let folder = Folder::new("tune-limit");
+    folder.write("valve.csv", &valve());
+    let columns = ["--input", "Ventil", "--output", "Temperatur", "--time", "Zeit", "--method", "momi"];
+    let tuned = |limits: &str| {
+        let arguments = [&["tune", "valve.csv", "--limits", limits, "--json"][..], &columns].concat();
+        json(&folder.run(&arguments))["warnings"].to_string()
+    };
+    assert!(tuned("29:46").contains("the output is at its limit 46"), "{}", tuned("29:46"));
+    assert!(!tuned("-1000:1000").contains("limit"), "{}", tuned("-1000:1000"));
+}
