@@ -55,6 +55,8 @@ pub fn of(made: &Design, limits: Option<(f64, f64)>, command: &str) -> DesignFil
     for (step, asked) in [(&mut file.setpoint_step, y.max(u)), (&mut file.load_step, y_load.max(u_load))] {
         if asked > most && asked.is_finite() {
             *step = round_down(*step * most / asked);
+            file.comments
+                .push(format!("note: a step of {step} instead of 1, or the signals are beyond {WIDEST:e}"));
         }
     }
     widen(&mut file, made, limits);

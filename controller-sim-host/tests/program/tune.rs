@@ -250,3 +250,19 @@ fn a_limit_that_is_reached_is_said() {
     assert!(tuned("29:46").contains("the output is at its limit 46"), "{}", tuned("29:46"));
     assert!(!tuned("-1000:1000").contains("limit"), "{}", tuned("-1000:1000"));
 }
+
+/// The noise passes through the whole controller: PID and estimator together, in the closed loop.
+#[test]
+fn noise_is_warned_of_by_the_gain_of_the_whole_controller() {
+    let folder = Folder::new("tune-noise");
+    folder.write("valve.csv", &valve());
+    let columns = ["--input", "Ventil", "--output", "Temperatur", "--time", "Zeit"];
+    let tuned =
+        json(&folder.run(&[&["tune", "valve.csv", "--limits", "37:38", "--json"][..], &columns].concat()));
+    let warnings: Vec<&str> =
+        tuned["warnings"].as_array().expect("warnings").iter().filter_map(Value::as_str).collect();
+    let said = warnings.iter().find(|text| text.starts_with("its noise (one sigma)")).expect("a warning");
+    let gain = said.split("noise gain ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a gain");
+    let white = number(&tuned["design"]["discrete"]["noise"]["white"]);
+    assert!((gain.parse::<f64>().expect("a number") / white - 1.0).abs() < 1e-4, "{said}: {white}");
+}
