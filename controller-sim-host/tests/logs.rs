@@ -50,6 +50,41 @@ fn the_same_table_in_many_hands() {
     }
 }
 
+/// With decimal commas a point parts thousands, and the other way round.
+#[test]
+fn thousands_are_read_by_the_decimal_sign_of_the_file() {
+    for (text, y) in [
+        ("t;u;y\n0;300,5;998\n1;400,5;1.098\n2;400,5;-12.345\n", [998.0, 1098.0, -12_345.0]),
+        ("t;u;y\n0;30,0;12.502,00\n1;30,0;999,5\n2;30,0;1.234.567,25\n", [12_502.0, 999.5, 1_234_567.25]),
+        ("t;u;y\n0;30;12,502.00\n1;30;999.5\n2;30;1,098\n", [12_502.0, 999.5, 1098.0]),
+        ("t,u,y\n0,300.5,998\n1,400.5,\"1,098\"\n2,400.5,\"1,098.5\"\n", [998.0, 1098.0, 1098.5]),
+        ("t;u;y\n0;30;1.234.567\n1;30;999\n2;30;1.098\n", [1_234_567.0, 999.0, 1098.0]),
+        // Decimals, by the numbers of the column itself, by a file that only has them, and where a comma parts the cells.
+        ("t;u;y\n0;300,5;0.998\n1;400,5;1.098\n2;400,5;1.1\n", [0.998, 1.098, 1.1]),
+        ("t;u;y\n0,000;50,000;50,070\n0,500;50,000;49,980\n1,000;50,000;50,012\n", [50.07, 49.98, 50.012]),
+        ("t;u;y\n0;30;21.500\n1;30;21.625\n2;30;21.500\n", [21.5, 21.625, 21.5]),
+        ("t,u,y\n0,30,21\n1,30,21.625\n2,30,22\n", [21.0, 21.625, 22.0]),
+    ] {
+        let log = good(text);
+        assert_eq!(columns(&log).2, y, "{text}");
+        let remarks: Vec<_> =
+            log.remarks.iter().filter(|r| r.message.contains("is taken for 1098")).collect();
+        assert_eq!(!remarks.is_empty(), y[1..].contains(&1098.0), "{text}: {:?}", log.remarks);
+    }
+    for (text, line, cell) in [
+        ("t;u;y\n0;300;998\n1;400;1.098\n2;400;1.099\n", 3, "1.098"),
+        ("t;u;y\n0;300;1.098\n1;400;1,099\n2;400;1.099\n", 2, "1.098"),
+        ("t,u,y\n0,300,998\n1,400,\"1,098\"\n2,400,\"1,099\"\n", 3, "1,098"),
+    ] {
+        let (fault, place) = bad(text);
+        assert!(fault.message.contains("may be a decimal number or thousands"), "{fault:?}");
+        assert!(fault.help.is_some_and(|help| help.contains("thousands")));
+        assert_eq!((place.line, &*place.text), (line, cell));
+    }
+    // A column that is not read is none of our business.
+    assert_eq!(good("t;u;y;z\n0;3;5;998\n1;4;6;1.098\n").columns.len(), 2);
+}
+
 /// Both columns are asked for by the name of either one; whole days count.
 #[test]
 fn a_date_beside_the_time_of_day_counts() {

@@ -1,12 +1,12 @@
 //! Lines and cells of a table, with their places.
 
+use super::sign::{Sign, Written, written};
 use std::ops::Range;
 
 /// A cell: its place in the text, without spaces and quotes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Cell {
     pub(super) span: Range<usize>,
-    pub(super) quoted: bool,
 }
 
 /// A line that is neither empty nor a comment.
@@ -74,7 +74,7 @@ pub(super) fn cells(text: &str, span: &Range<usize>, separator: Separator) -> Ve
             start += 1 + (inner.len() - inner.trim_start().len());
             length = inner.trim().len();
         }
-        list.push(Cell { span: start..start + length, quoted });
+        list.push(Cell { span: start..start + length });
     };
     let (mut from, mut in_quotes) = (0, false);
     match separator {
@@ -99,15 +99,18 @@ pub(super) fn cells(text: &str, span: &Range<usize>, separator: Separator) -> Ve
     list
 }
 
-/// The number in a cell, infinite ones and NaN included.
-pub(super) fn number(cell: &str, comma_is_decimal: bool) -> Option<f64> {
-    let signs = |c: char| c.is_ascii_digit() || "+-.eE,".contains(c);
-    if cell.is_empty() || !cell.chars().all(signs) {
-        return None;
+/// The number in a cell, infinite ones and NaN included; `sign` is that of its column.
+pub(super) fn number(cell: &str, sign: Option<Sign>) -> Option<f64> {
+    let written = written(cell)?;
+    let sign = match written {
+        Written::Whole => return cell.parse().ok(),
+        Written::By(own) => own,
+        // Without a sign of the column, whatever it is: who asks only wants to know whether it is a number.
+        Written::Unclear(own) => sign.unwrap_or(own),
+    };
+    if sign == Sign::Point && !cell.contains(',') {
+        return cell.parse().ok();
     }
-    if cell.contains(',') {
-        let decimal = comma_is_decimal && !cell.contains('.') && cell.matches(',').count() == 1;
-        return if decimal { cell.replace(',', ".").parse().ok() } else { None };
-    }
-    cell.parse().ok()
+    let group = sign.other().char();
+    cell.replace(group, "").replace(sign.char(), ".").parse().ok()
 }

@@ -1,7 +1,8 @@
 //! Logs of real processes: tables in CSV as loggers, spreadsheets and control systems write them.
 //!
 //! * Cells are separated by `;`, tabs or `,`, or by spaces where there is nothing else; they may be in quotes. With
-//!   `;`, tabs, spaces or in quotes a comma may be the decimal sign.
+//!   `;`, tabs, spaces or in quotes a comma may be the decimal sign; the other one of point and comma parts thousands, and
+//!   `1.098` is read as the numbers around it say, or refused where they do not.
 //! * Above the table there may be comments (`#`, `%`, `//`), other text, a line with names and one with units.
 //! * Times are numbers (seconds, unless the name or the unit says ms, min or h), clock times `12:30:05,5`, ISO date-times
 //!   `2024-03-01T12:30:05.5+01:00`, or date-times with dots, `01.03.2024 12:30:05,5`, the day first; date and clock time may
@@ -16,6 +17,7 @@ mod cells;
 mod choose;
 mod decode;
 mod read;
+mod sign;
 mod time;
 
 pub use choose::{Column, Role};

@@ -2,6 +2,7 @@
 
 use super::cells::{Cell, Line, Separator, cells, is_comment, lines, number, separator};
 use super::choose::{Role, choose, words};
+use super::sign::{Reading, Sign, Signs};
 use super::time::{self, Clock, Stamp};
 use crate::scenario::{Fault, code, show_short};
 use std::ops::Range;
@@ -72,6 +73,9 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
     let title = log.titles.first().map_or(Vec::new(), |title| words(title));
     let below = log.units.first().map_or(Vec::new(), |unit| words(unit));
     let mut clock = Clock::new(&below, title.get(1..).unwrap_or(&[]));
+    if let Some(fault) = chosen.iter().flatten().find_map(|column| table.unclear(*column)) {
+        return Err(fault);
+    }
     let mut skipped: Vec<Fault> = Vec::new();
     for row in &table.rows {
         let mut values = Vec::with_capacity(chosen.len());
@@ -116,6 +120,7 @@ pub fn read(file: &str, text: &str, roles: &[Role]) -> Result<Log, Fault> {
         Fault::new(code::RECORDING, table.place_of_names(), format!("the times are taken to be {unit}"))
     }));
     tell(&mut log.remarks, skipped, "the row is left out: ", "more rows are left out");
+    log.remarks.extend(chosen.iter().flatten().filter_map(|column| table.thousands(*column)));
     log.remarks.extend(doubled(&log, &table));
     let gaps = gaps(&log, &table);
     tell(&mut log.remarks, gaps, "", "more gaps");
@@ -181,7 +186,8 @@ fn doubled(log: &Log, table: &Table<'_>) -> Option<Fault> {
 struct Table<'t> {
     file: &'t str,
     text: &'t str,
-    comma_is_decimal: bool,
+    signs: Signs,
+    readings: Vec<Reading>,
     spans: Vec<Range<usize>>,
     names: Vec<String>,
     names_at: Option<Range<usize>>,
@@ -195,7 +201,8 @@ impl<'t> Table<'t> {
         let mut table = Self {
             file,
             text,
-            comma_is_decimal: separator != Separator::Char(','),
+            signs: Signs::new(separator == Separator::Char(',')),
+            readings: Vec::new(),
             spans: Vec::new(),
             names: Vec::new(),
             names_at: None,
@@ -226,8 +233,10 @@ impl<'t> Table<'t> {
                 let message = format!("`{file}` has more than {MOST_ROWS} rows");
                 return Err(Fault::new(code::RECORDING, span, message));
             }
+            table.signs.see(text, &row, table.rows.len());
             table.rows.push(row);
         }
+        table.readings = table.signs.readings();
         let Some(width) = table.rows.first().map(|row| row.cells.len()) else { return Err(table.empty()) };
         table.head(above, comment, width, separator);
         Ok(table)
@@ -270,7 +279,7 @@ impl<'t> Table<'t> {
     }
 
     fn is_number(&self, cell: &Cell) -> bool {
-        time::parse(&self.text[cell.span.clone()], self.comma_is_decimal || cell.quoted).is_some()
+        time::parse(&self.text[cell.span.clone()], None).is_some()
     }
 
     fn empty(&self) -> Fault {
@@ -296,12 +305,42 @@ impl<'t> Table<'t> {
         Fault::new(code::RECORDING, span, format!("{title}: {}", why.into()))
     }
 
-    fn cell<'a>(&self, row: &'a Line, column: usize) -> Result<(&'a Cell, &'t str), Fault> {
+    fn cell(&self, row: &Line, column: usize) -> Result<&'t str, Fault> {
         match row.cells.get(column) {
-            Some(cell) if !cell.span.is_empty() => Ok((cell, &self.text[cell.span.clone()])),
+            Some(cell) if !cell.span.is_empty() => Ok(&self.text[cell.span.clone()]),
             Some(_) => Err(self.fault(row, column, "the cell is empty")),
             None => Err(self.fault(row, column, format!("the row ends after column {}", row.cells.len()))),
         }
+    }
+
+    /// The decimal sign of a column.
+    fn sign(&self, column: usize) -> Option<Sign> {
+        match self.readings.get(column) {
+            Some(Reading::By(sign)) => Some(*sign),
+            _ => None,
+        }
+    }
+
+    /// That the numbers of a column are decimal ones or thousands, and nobody can tell.
+    fn unclear(&self, column: usize) -> Option<Fault> {
+        let Some(Reading::Unknown(row)) = self.readings.get(column) else { return None };
+        let row = self.rows.get(*row)?;
+        let text = self.cell(row, column).ok()?;
+        let why = format!("`{text}` may be a decimal number or thousands");
+        Some(self.fault(row, column, why).help(
+            "write numbers without a sign between thousands, or all of a column with the same number of decimals",
+        ))
+    }
+
+    /// That a single sign is taken to part thousands.
+    fn thousands(&self, column: usize) -> Option<Fault> {
+        let sign = self.sign(column)?;
+        let row = self.signs.thousands(column, sign)?;
+        let row = self.rows.get(row)?;
+        let text = self.cell(row, column).ok()?;
+        let value = number(text, Some(sign))?;
+        let why = format!("`{text}` is taken for {value}: a {} is the decimal sign here", sign.name());
+        Some(self.fault(row, column, why))
     }
 
     /// The two columns next to each other in which dates and clock times are.
@@ -318,10 +357,10 @@ impl<'t> Table<'t> {
     }
 
     fn time(&self, row: &Line, column: usize, date: Option<usize>) -> Result<Stamp, Fault> {
-        let (cell, text) = self.cell(row, column)?;
+        let text = self.cell(row, column)?;
         let (wrong, parsed) = match date {
-            Some(date) => (date, time::joined(self.cell(row, date)?.1, text)),
-            None => (column, time::parse(text, self.comma_is_decimal || cell.quoted)),
+            Some(date) => (date, time::joined(self.cell(row, date)?, text)),
+            None => (column, time::parse(text, self.sign(column))),
         };
         parsed.filter(|stamp| !matches!(stamp, Stamp::Number(t) if t.abs() > 1e15)).ok_or_else(|| {
             let help = match time::is_unclear(text) {
@@ -335,8 +374,8 @@ impl<'t> Table<'t> {
     }
 
     fn value(&self, row: &Line, column: usize) -> Result<f64, Fault> {
-        let (cell, text) = self.cell(row, column)?;
-        match number(text, self.comma_is_decimal || cell.quoted) {
+        let text = self.cell(row, column)?;
+        match number(text, self.sign(column)) {
             Some(x) if x.abs() <= 1e15 => Ok(x),
             Some(_) => Err(self.fault(row, column, "the number is larger than 1e15")),
             None => Err(self.fault(row, column, "this is no number")),

@@ -1,5 +1,7 @@
 //! Times as people and machines write them.
 
+use super::sign::Sign;
+
 /// Nanoseconds: of a date-time seconds as a floating-point number would have lost digits.
 const SECOND: i128 = 1_000_000_000;
 
@@ -14,9 +16,9 @@ pub(super) enum Stamp {
     Date(i128),
 }
 
-/// The time in a cell.
-pub(super) fn parse(cell: &str, comma_is_decimal: bool) -> Option<Stamp> {
-    if let Some(number) = super::cells::number(cell, comma_is_decimal) {
+/// The time in a cell; `sign` is the decimal sign of its column.
+pub(super) fn parse(cell: &str, sign: Option<Sign>) -> Option<Stamp> {
+    if let Some(number) = super::cells::number(cell, sign) {
         return Some(Stamp::Number(number));
     }
     if let Some(clock) = clock(cell) {
@@ -195,7 +197,7 @@ mod tests {
             ("29.02.2000 12:00:00", 951_825_600_000),
             ("1999-12-31T23:59:60-0530", 946_704_600_000),
         ] {
-            assert_eq!(parse(text, false), Some(Stamp::Date(milliseconds * SECOND / 1000)), "{text}");
+            assert_eq!(parse(text, None), Some(Stamp::Date(milliseconds * SECOND / 1000)), "{text}");
         }
         for wrong in [
             "2023-02-29 12:00",
@@ -214,10 +216,10 @@ mod tests {
             "\u{e4}.\u{e4}.2024 12:00",
         ] {
             let number = wrong == "12:30:05.";
-            assert_eq!(parse(wrong, false).is_some(), number, "{wrong}");
+            assert_eq!(parse(wrong, None).is_some(), number, "{wrong}");
         }
-        assert_eq!(parse("7:05:01,5", false), Some(Stamp::Clock(25_501_500_000_000)));
-        assert_eq!(joined("01.03.2024", "12:30:05"), parse("2024-03-01 12:30:05", false));
+        assert_eq!(parse("7:05:01,5", None), Some(Stamp::Clock(25_501_500_000_000)));
+        assert_eq!(joined("01.03.2024", "12:30:05"), parse("2024-03-01 12:30:05", None));
         assert!(is_unclear("01/03/2024 12:00") && is_unclear("1-3-24") && !is_unclear("2024-03-01"));
         assert!(!is_unclear("fault") && !is_unclear("12:00") && !is_unclear("1.5"));
     }
@@ -231,7 +233,7 @@ mod tests {
             ("2100-01-01T00:00:00.1", 0.102),
             ("2100-01-01T01:00:00.123456789Z", 3_600.125_456_789),
         ] {
-            let stamp = parse(text, true).expect(text);
+            let stamp = parse(text, None).expect(text);
             assert_eq!(clock.seconds(stamp).map(f64::to_bits), Ok(f64::to_bits(seconds)), "{text}");
         }
     }
