@@ -27,6 +27,9 @@ const DEFAULT_NOISE_RATIO: f64 = 4.0;
 /// Default limit of the maximum sensitivity with an observer whose noise ratio is chosen.
 const DEFAULT_MS_MAX: f64 = 2.0;
 
+/// Noise ratio below which an observer hardly does anything.
+const IDLE_RATIO: f64 = 1.05;
+
 /// Steps by which an observer's filter is slowed down.
 const SLOWER: f64 = 1.05;
 const SLOWER_STEPS: usize = 120;
@@ -235,11 +238,33 @@ impl Job<'_> {
             ObserverFilter::Default => Some(most.unwrap_or(DEFAULT_MS_MAX)),
             _ => most,
         };
+        let alpha = made.observer.alpha;
+        let mut told: Warnings = made.warnings.clone();
         let made = match limit {
             Some(limit) => self.slowed(made, &pid, limit)?,
             None => made,
         };
-        made.warnings.iter().for_each(|warning| self.warn(*warning));
+        let ratio = made.an / pid.kp.abs();
+        if made.observer.alpha > alpha {
+            told = made.warnings.clone();
+            let text = "lowered to keep ms_max in the sampled loop, too";
+            warn(&mut told, Warning::Value { about: "noise_ratio", value: ratio, text });
+            let text = "raised to keep ms_max in the sampled loop, too";
+            warn(&mut told, Warning::Value { about: "alpha", value: made.observer.alpha, text });
+        }
+        if ratio < IDLE_RATIO {
+            let text = match self.request.observer_filter {
+                ObserverFilter::Time(_) => "the observer hardly does anything: choose a shorter alpha",
+                ObserverFilter::NoiseRatio(_) | ObserverFilter::Wanted(_) if limit.is_none() => {
+                    "the observer hardly does anything: ask for more of it"
+                }
+                _ => {
+                    "the observer hardly does anything: a smaller ms of the PI or a larger ms_max leaves it room"
+                }
+            };
+            warn(&mut told, Warning::Value { about: "noise_ratio", value: ratio, text });
+        }
+        told.iter().for_each(|warning| self.warn(*warning));
         self.made.noise.an = Some(made.an);
         let mut observer: ObserverConfig = made.observer;
         // The block adds the latency itself.

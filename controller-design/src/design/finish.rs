@@ -1,7 +1,7 @@
 //! What can be said of a loop once its law is made.
 
 use super::build::Made;
-use super::{Design, Law, Predicted, Request, Sampled};
+use super::{Design, Law, Method, Predicted, Request, Sampled};
 use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop, Margins, TOO_MANY_TURNS};
 use crate::model::TransferFunction;
 use crate::rules::noise_limit;
@@ -82,6 +82,24 @@ fn few_samples(margins: &Margins, ts: f64) -> Option<f64> {
     (samples < FEW_SAMPLES).then_some(samples)
 }
 
+/// That `Ms` is above 2, and the options of the method that lower it.
+pub(super) fn fragile(method: Method) -> &'static str {
+    let has = |option: &str| method.options().contains(&option);
+    if has("kden") {
+        "above 2, little robustness: ms_max, a longer tf or a smaller kpidn lowers it"
+    } else if has("alpha") {
+        "above 2, little robustness: ms_max, a longer alpha or a smaller ms lowers it"
+    } else if has("tau_c") {
+        "above 2, little robustness: a longer tau_c lowers it"
+    } else if has("ms") {
+        "above 2, little robustness: a smaller ms lowers it"
+    } else if has("kpidn") {
+        "above 2, little robustness: a longer tf or a smaller kpidn may lower it"
+    } else {
+        "above 2, little robustness: the rule has no option that lowers it"
+    }
+}
+
 /// What can be said of the loop as a whole.
 pub(super) fn finish(
     plant: &TransferFunction,
@@ -112,8 +130,13 @@ pub(super) fn finish(
         predicted = of_adrc(config, delayed, request.ts).unwrap_or(predicted);
     }
     let ms = robustness.ms.max(sampled.margins.ms);
-    if ms > ROBUST && request.ms.is_none_or(|asked| asked < ROBUST) && request.ms_max.is_none() {
-        let text = "above 2, little robustness: a slower filter, a smaller noise gain or ms_max lowers it";
+    let is_told = |warning: &Warning| matches!(warning, Warning::Value { about, .. } if about.eq_ignore_ascii_case("ms"));
+    if ms > ROBUST
+        && !warnings.iter().any(is_told)
+        && request.ms.is_none_or(|asked| asked < ROBUST)
+        && request.ms_max.is_none()
+    {
+        let text = fragile(request.method);
         warn(&mut warnings, Warning::Value { about: "Ms", value: ms, text });
     }
     if let Some(samples) = few_samples(&sampled.margins, request.ts) {
@@ -135,4 +158,21 @@ pub(super) fn finish(
         predicted,
         warnings,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Method, fragile};
+
+    /// An option that is named is one of the method, so that the program takes it.
+    #[test]
+    fn the_advice_is_of_options_that_the_method_has() {
+        let all: Vec<&str> = Method::ALL.iter().flat_map(|method| method.options()).copied().collect();
+        for method in Method::ALL {
+            let words = fragile(method).split([' ', ',', ':']);
+            let named: Vec<&str> = words.filter(|word| all.contains(word)).collect();
+            assert!(named.iter().all(|word| method.options().contains(word)), "{method:?}: {named:?}");
+            assert_eq!(named.is_empty(), method.options().is_empty(), "{method:?}");
+        }
+    }
 }

@@ -35,6 +35,13 @@ impl Job<'_> {
                 |warning: &&Warning| !matches!(warning, Warning::OutsideValidity { about: LOOP_GAIN, .. });
             made.warnings.iter().filter(told).for_each(|warning| self.warn(*warning));
         } else {
+            // A time until the output turns that is as long as the lags is beyond the plants of the fit.
+            if self.delayed.zeros().iter().any(|zero| zero.re > 0.0) {
+                return Err(Refusal::NoSolution {
+                    why: "the kappa-tau rule misses the Ms it is made for by more than half: the zero in the right half-plane is too slow for it",
+                    help: "use a rule that takes the plant as it is",
+                });
+            }
             return Err(Refusal::NoSolution {
                 why: "the kappa-tau rule misses the Ms it is made for by more than half: the plant is too much like a single lag with a short dead time, or swings",
                 help: "use a rule that takes the plant as it is",
