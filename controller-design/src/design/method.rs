@@ -144,7 +144,7 @@ impl Method {
             Self::Momi => "Vrančić & Huba 2021, eq. (6)",
             Self::Drmo => "Vrančić & Huba 2021, eqs (8)-(10), beta corrected",
             Self::DeMomi => "Vrančić & Huba 2021, eqs (13)-(19)",
-            Self::PiMs => "Tena et al. 2022, section 3",
+            Self::PiMs => "Tena et al. 2022, section 4.2",
             Self::Dob => "Tena et al. 2022, sections 3 and 6",
             Self::PiIae => "Airikka 2021, by optimisation",
             Self::Ah => "Åström & Hägglund 1995, kappa-tau rules",

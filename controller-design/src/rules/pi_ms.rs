@@ -23,7 +23,7 @@ const AT_LIMIT: f64 = 0.98;
 const HIGH_GAIN: f64 = 50.0;
 
 /// The PI controller with the largest `ki` whose sensitivity peak `max|S|` is `ms`: the design of Tena et al. 2022,
-/// section 4 (after Åström, Panagopoulos and Hägglund, MIGO). `1/ki` is the integral of the error after a unit step
+/// section 4.2 and step 2 of section 6 (after Åström, Panagopoulos and Hägglund, MIGO). `1/ki` is the integral of the error after a unit step
 /// of the load, so for a well damped loop this is also the least IAE.
 ///
 /// For each frequency the gains that would bring the Nyquist curve nearer to -1 than `1/ms` fill an ellipse in the
