@@ -1,6 +1,7 @@
 //! What gives a design where a rule has none: tried, not guessed.
 
-use super::{Design, Filter, Method, Request, design};
+use super::{Design, Filter, Method, ObserverFilter, Request, design};
+use crate::Refusal;
 use crate::model::TransferFunction;
 
 /// A request that gives a robust loop, `Ms` at most 2, on a plant for which another one was refused.
@@ -9,14 +10,27 @@ pub struct Remedy {
     /// The request.
     pub request: Request,
     /// The option that makes the difference, by its name in files, and its value; `None`: the defaults will do.
+    ///
+    /// Of `want` the value is that of the index in [`Request::observer_filter`].
     pub option: Option<(&'static str, f64)>,
 }
 
 /// Most remedies that are named.
 const ENOUGH: usize = 3;
-/// Other rules, those first that take most plants.
-const OTHERS: [Method; 7] =
-    [Method::PiMs, Method::Momi, Method::Simc, Method::DeMomi, Method::Dob, Method::Amigo, Method::Drmo];
+/// Other rules, those first that take most plants; last those whose loops are seldom robust.
+const OTHERS: [Method; 9] = [
+    Method::PiMs,
+    Method::Momi,
+    Method::Simc,
+    Method::DeMomi,
+    Method::Dob,
+    Method::Amigo,
+    Method::Drmo,
+    Method::Adrc,
+    Method::PiIae,
+];
+/// Wishes for an index in units of the least attainable: the last bit costs the robustness.
+const ABOVE_LEAST: [f64; 6] = [1.02, 1.1, 1.25, 1.5, 2.0, 4.0];
 /// Closed-loop time constants for `simc` in units of the plant's own time.
 const CLOSED_LOOP: [f64; 4] = [0.25, 1.0, 4.0, 16.0];
 /// The least of them in samples.
@@ -63,6 +77,16 @@ fn options(plant: &TransferFunction, refused: &Request, own: Request) -> Vec<Rem
             request: Request { filter: Filter::NoiseGain(kpidn), ..own },
             option: Some(("kpidn", kpidn)),
         });
+    }
+    if let ObserverFilter::Wanted(wish) = refused.observer_filter
+        && let Err(Refusal::Unattainable { least, .. }) =
+            design(plant, &Request { observer_filter: refused.observer_filter, ..own })
+    {
+        list.extend(ABOVE_LEAST.map(|times| {
+            let value = format!("{:.2e}", times * least).parse().unwrap_or(times * least);
+            let observer_filter = ObserverFilter::Wanted(wish.with(value));
+            Remedy { request: Request { observer_filter, ..own }, option: Some(("want", value)) }
+        }));
     }
     let ms = match refused.method {
         Method::Ah => Some(1.4),

@@ -37,6 +37,34 @@ impl Wish {
         }
     }
 
+    /// What the index is called on the command line and in files.
+    ///
+    /// ```
+    /// assert_eq!(controller_design::rules::Wish::RampIe(1.0).name(), "ramp_ie");
+    /// ```
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Iae(_) => "iae",
+            Self::Ise(_) => "ise",
+            Self::Itae(_) => "itae",
+            Self::EMax(_) => "e_max",
+            Self::RampIe(_) => "ramp_ie",
+        }
+    }
+
+    /// The same index with another value.
+    #[must_use]
+    pub const fn with(self, value: f64) -> Self {
+        match self {
+            Self::Iae(_) => Self::Iae(value),
+            Self::Ise(_) => Self::Ise(value),
+            Self::Itae(_) => Self::Itae(value),
+            Self::EMax(_) => Self::EMax(value),
+            Self::RampIe(_) => Self::RampIe(value),
+        }
+    }
+
     fn what(self) -> &'static str {
         match self {
             Self::Iae(_) => "the IAE",

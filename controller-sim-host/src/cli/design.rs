@@ -10,7 +10,7 @@ use crate::design_run::run_file;
 use crate::output::{self, FileTarget, Problem, Trouble};
 use crate::scenario::{Fault, SourceText, code};
 use controller_design::Refusal;
-use controller_design::design::{Method, Remedy, Request, design, remedies};
+use controller_design::design::{Method, ObserverFilter, Remedy, Request, design, remedies};
 use controller_design::model::{TransferFunction, parse};
 
 /// `design`: `command` is what was typed.
@@ -90,7 +90,10 @@ fn with_remedies(plant: &TransferFunction, request: &Request, refusal: &Refusal)
         return refused(method, refusal);
     }
     let typed = |Remedy { request, option }: Remedy| {
-        let option = option.map_or(String::new(), |(name, value)| format!(" {} {value}", flag(name)));
+        let option = option.map_or(String::new(), |(name, value)| match request.observer_filter {
+            ObserverFilter::Wanted(wish) => format!(" {} {}={value}", flag(name), wish.name()),
+            _ => format!(" {} {value}", flag(name)),
+        });
         format!("`--method {}{option}`", request.method.name())
     };
     let works: Vec<String> = remedies(plant, request).into_iter().map(typed).collect();

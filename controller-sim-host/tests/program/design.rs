@@ -163,6 +163,24 @@ fn the_help_of_a_refusal_helps() {
     assert!(followed >= 20, "{followed}");
 }
 
+/// The least index that can be had, or a little more, is named in the words of the command line.
+#[test]
+fn a_wish_that_is_refused_comes_back_as_one_that_works() {
+    let folder = Folder::new("design-want");
+    let base = ["design", "--plant", "exp(-s)/(1+2*s)^2", "--method", "dob", "--json"];
+    for index in ["iae", "ise", "e_max", "ramp_ie"] {
+        let error = json(&folder.run(&[&base[..], &["--want", &format!("{index}=0.0001")]].concat()));
+        let help = error["error"]["help"].as_str().unwrap_or("");
+        let ways = named(help);
+        let way =
+            ways.iter().find(|way| way.contains(&"--want")).unwrap_or_else(|| panic!("{index}: {error}"));
+        assert!(way[3].starts_with(&format!("{index}=")), "{help}");
+        let made = folder.run(&[&["design", "--plant", "exp(-s)/(1+2*s)^2", "--json"][..], way].concat());
+        assert_eq!(made.status.code(), Some(0), "{help}");
+        assert!(number(&json(&made)["discrete"]["robustness"]["ms"]) <= 2.0, "{help}");
+    }
+}
+
 /// A given option is used or named as not used, and ADRC's searched gain can be had alone.
 #[test]
 fn advise_says_who_used_an_option() {
