@@ -51,6 +51,7 @@ Examples:
   controller-sim export loop.toml --format rust                         to the screen
   controller-sim export loop.toml --format rust --save src/loop_law.rs
   controller-sim export my.toml --controller 'PI + DOB' --format rust --capacity 64
+  controller-sim export loop.toml --format rust --set 'controller.\"DE-MOMI\".pid.kp=2'
 
 The law is built in the target's number type before a line is written. The Rust module checks when it is compiled that
 nobody changed a number since.";
@@ -94,7 +95,8 @@ Examples:
                                                      rows 0.1 s apart, for a controller that runs every 0.5 s
   controller-sim run loop.toml --precision f32       the loop as the target computes it
 
-The noise gain is 4/|K| or what is attainable; Ms is kept at 2 or below by the filter of the estimator.
+The noise gain is 4/|K| or what is attainable; de-momi and dob keep Ms at 2 or below by the filter
+of their block, the others warn of a larger one.
 Exit code 3: the log or the rule gives no loop; the message says why and what helps.";
 pub(super) const REPRODUCE: &str = "\
 Examples:

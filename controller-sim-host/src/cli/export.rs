@@ -36,7 +36,7 @@ pub(super) struct ExportArguments {
     /// Replace the file if it exists
     #[arg(long, requires = "save")]
     force: bool,
-    /// Change a value of the file, for example `controller.pid.kp=2`; may be given more than once
+    /// Change a value of the file, for example `controller."DE-MOMI".pid.kp=2`, in quotes of the shell; may be given more than once
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
     set: Vec<(String, String)>,
 }

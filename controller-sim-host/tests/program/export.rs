@@ -70,3 +70,15 @@ fn what_cannot_be_exported_says_what_to_do() {
     fails(&["absent.toml"], 2, "absent.toml");
     assert_eq!(folder.names(), ["base.toml", "two.toml"]);
 }
+
+/// What the help shows can be typed.
+#[test]
+fn the_example_of_set_works_on_a_designed_loop() {
+    let folder = Folder::new("export-set");
+    let plant = "exp(-0.2*s)/((1+0.2*s)*(1+s))";
+    folder.done(&["design", "--plant", plant, "--method", "de-momi", "--ts", "0.01", "--save", "loop.toml"]);
+    let help = folder.done(&["export", "--help"]);
+    let example = help.split("--set '").nth(1).and_then(|rest| rest.split('\'').next()).expect("an example");
+    let shown = folder.done(&["export", "loop.toml", "--format", "rust", "--set", example]);
+    assert!(shown.contains("kp: 2.0,"), "{example}\n{shown}");
+}
