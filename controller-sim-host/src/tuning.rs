@@ -3,15 +3,22 @@
 use crate::design_file;
 use crate::quiet;
 use crate::scenario::{DesignFile, Units};
-use controller_design::Refusal;
 use controller_design::design::{Design, Law, Request, design_with_areas};
 use controller_design::identification::{
     Chosen, Fit, Identified, IdentifyOptions, Recording, SecondOrder, identify,
 };
 use controller_design::model::{Polynomial, Sopdt, TransferFunction};
+use controller_design::{Refusal, Warning};
 
 /// A lag below this share of the sampling period counts as dead time.
 const FAST_LAG: f64 = 0.05;
+/// Shares of the output's change that a model may be off by, beyond the noise: at all, and where no model of any order
+/// comes nearer to the record than ten times the noise.
+const GROSS: f64 = 0.2;
+const GROSS_UNEXPLAINED: f64 = 0.05;
+const UNEXPLAINED: f64 = 10.0;
+/// Standard deviations that noise is rarely beyond in two rows of three.
+const NOISE: f64 = 4.0;
 /// Share of the recorded change of the input that the load of the design file steps by.
 const LOAD: f64 = 0.2;
 
@@ -49,11 +56,38 @@ impl Tuned {
     /// Largest distance of the response of the model in the loop from the record \[y\].
     #[must_use]
     pub fn worst_residual(&self, recording: &Recording<'_>) -> f64 {
-        let found = &self.found;
-        let simulated = if self.on_fit { found.simulate_fit(recording) } else { found.simulate(recording) };
-        let simulated = simulated.unwrap_or_default();
-        simulated.iter().zip(recording.y).map(|(model, y)| (model - y).abs()).fold(0.0, f64::max)
+        residuals(recording, &self.found, self.on_fit).into_iter().fold(0.0, f64::max)
     }
+}
+
+/// Distances of the response of the model in the loop from the record.
+fn residuals(recording: &Recording<'_>, found: &Identified, on_fit: bool) -> Vec<f64> {
+    let simulated = if on_fit { found.simulate_fit(recording) } else { found.simulate(recording) };
+    let simulated = simulated.unwrap_or_default();
+    simulated.iter().zip(recording.y).map(|(model, y)| (model - y).abs()).collect()
+}
+
+/// Refuses a model that has nothing to do with its record: a loop on it would be made for another process. A single row that
+/// is off, as sensors have them, does not count.
+fn explained(recording: &Recording<'_>, found: &Identified, on_fit: bool) -> Result<(), Refusal> {
+    let residuals = residuals(recording, found, on_fit);
+    let lasting = residuals.windows(3).map(|three| {
+        let (low, high) = (three[0].min(three[1]), three[0].max(three[1]));
+        low.max(high.min(three[2]))
+    });
+    let off = lasting.fold(0.0, f64::max) - NOISE * found.sigma.max(found.quantisation);
+    let change = (found.y_inf - found.y0).abs();
+    let is_unexplained = found.warnings.iter().any(|warning| {
+        matches!(warning, Warning::Value { about: "misfit over noise", value, .. } if *value > UNEXPLAINED)
+    });
+    if off > GROSS * change || is_unexplained && off > GROSS_UNEXPLAINED * change {
+        return Err(Refusal::Data {
+            why: "no model explains the record: the best one misses it by a large share of the output's change",
+            help: "look at both by `identify --report`: wrong columns, numbers that were read wrong, a disturbance, \
+                   friction, or a process that is far from linear; then record one change between two states of rest",
+        });
+    }
+    Ok(())
 }
 
 /// Identifies the process of `recording` and designs a controller by `request`.
@@ -82,9 +116,10 @@ pub fn tune(recording: &Recording<'_>, request: &Request, known: &Known) -> Resu
         }
         Err(refusal) => return Err(refusal),
     };
+    let on_fit = rich(&found, request.ts).is_some();
+    explained(recording, &found, on_fit)?;
     let warnings = warnings(recording, &found, &made, known);
     let file = file(&found, &made, known);
-    let on_fit = rich(&found, request.ts).is_some();
     Ok(Tuned { found, made, file, on_fit, warnings })
 }
 
@@ -97,9 +132,11 @@ fn designed(found: &Identified, request: &Request) -> Result<Design, Refusal> {
 /// The process of a recording as a plant, for the comparison of all rules.
 ///
 /// # Errors
-/// What the identification refuses.
-pub fn plant_of(found: &Identified, ts: f64) -> Result<TransferFunction, Refusal> {
-    plant(found, ts)
+/// What the identification refuses; a record that no model explains.
+pub fn plant_of(recording: &Recording<'_>, found: &Identified, ts: f64) -> Result<TransferFunction, Refusal> {
+    let plant = plant(found, ts)?;
+    explained(recording, found, rich(found, ts).is_some())?;
+    Ok(plant)
 }
 
 /// The model in whose place the controller works: the fit that was chosen, else the model of second order.

@@ -142,8 +142,9 @@ fn compare(arguments: &TuneArguments, json: bool) -> Result<(), Failure> {
     let recording = recording(&source, &log)?;
     let ts = arguments.ts.unwrap_or_else(|| usual_distance(recording.t));
     let found = identify(&recording, &IdentifyOptions::default());
-    let plant =
-        found.and_then(|found| plant_of(&found, ts)).map_err(|refusal| unusable(&source, &log, &refusal))?;
+    let plant = found
+        .and_then(|found| plant_of(&recording, &found, ts))
+        .map_err(|refusal| unusable(&source, &log, &refusal))?;
     let mut advice = advise(&plant, ts, |method| {
         arguments.wish.compared(method, ts, Some(MS_MAX).filter(|_| method.has_block()))
     });

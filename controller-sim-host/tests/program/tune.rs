@@ -103,6 +103,41 @@ fn a_noisy_log_of_a_cooling_valve_gives_a_robust_loop() {
     assert!((ms / number(&design["discrete"]["robustness"]["ms"]) - 1.0).abs() < 1e-9, "{ms}");
 }
 
+/// A point between thousands, from 1000 on, is read by the decimal commas of the other columns; numbers that jump by a
+/// factor of a thousand, however they came there, are no step response.
+#[test]
+fn a_record_that_no_model_explains_gives_no_loop() {
+    let folder = Folder::new("tune-gross");
+    let record = |thousands: fn(f64) -> String| -> String {
+        let row = |row: i32| {
+            let t = 2.0 * f64::from(row);
+            let after = t - 66.0;
+            let rise = 1.0 - ((-after / 40.0_f64).exp() * 40.0 - (-after / 15.0_f64).exp() * 15.0) / 25.0;
+            let y = if after > 0.0 { 900.0 + 200.0 * rise } else { 900.0 };
+            format!("{t};{},5;{}\n", if t < 60.0 { 300 } else { 400 }, thousands(y.round()))
+        };
+        "Zeit;MV;PV\n".to_owned() + &(0..300).map(row).collect::<String>()
+    };
+    let grouped = |y: f64| {
+        if y < 1000.0 { format!("{y}") } else { format!("1.{:03}", y - 1000.0) }
+    };
+    folder.write("grouped.csv", &record(grouped));
+    let output = folder.run(&["tune", "grouped.csv", "--limits", "0:1000", "--json"]);
+    let tuned = json(&output);
+    let gain = number(&tuned["identified"]["model"]["gain"]);
+    assert!((gain - 2.0).abs() < 0.05, "{tuned}");
+    folder.write(
+        "jumps.csv",
+        &record(|y| if y < 1000.0 { format!("{y},0") } else { format!("{:.4}", y / 1000.0) }),
+    );
+    for method in ["de-momi", "advise"] {
+        let output = folder.run(&["tune", "jumps.csv", "--limits", "0:1000", "--method", method]);
+        let shown = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{method}: {shown}");
+        assert!(shown.contains("no model explains the record") && shown.contains("--report"), "{shown}");
+    }
+}
+
 /// The recorded heater, where it is at hand: 10 bits, one row before the step, a doubled time stamp.
 #[test]
 fn the_recorded_heater_gives_a_loop_for_the_commissioning_file() {
