@@ -68,7 +68,11 @@ fn expected(made: &Design, file: &DesignFile) -> [(f64, f64); 2] {
     let at_once = at_once(made);
     let integrates = made.plant.integrators() > 0;
     let rest = if integrates { 0.0 } else { 1.0 / made.plant.gain().abs() };
-    let moved = if integrates { 2.0 / at_once } else { made.plant.gain().abs() };
+    let kp = match &made.law {
+        Law::Pid { pid, .. } => pid.kp.abs(),
+        Law::Adrc(adrc) => (adrc.kp / adrc.b0).abs(),
+    };
+    let moved = if integrates { 2.0 / kp } else { made.plant.gain().abs() };
     let (setpoint, load) = (file.setpoint_step.abs(), file.load_step.abs());
     [(2.0 * setpoint, 2.0 * setpoint * (at_once + rest)), (load * moved, 2.0 * load)]
 }
