@@ -7,7 +7,8 @@ use critical_section::Mutex;
 ///
 /// A new law is built and checked where there is time, published, and adopted by the control task at the start of a
 /// sample. Each publication has a generation number, so that the reader copies only what it has not seen.
-/// Cost: a critical section around one copy of `L`; [`take_newer`](Self::take_newer) without news costs one compare.
+/// Cost: a critical section around one copy of `L`; [`take_newer`](Self::take_newer) without news costs one compare in
+/// it.
 ///
 /// ```
 /// use controller_core::{ParamCell, Pid, PidConfig};

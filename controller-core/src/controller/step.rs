@@ -39,7 +39,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         }
     }
 
-    /// A sample that does not go on. A function that ends the step: it begins with nothing on the stack.
+    /// A sample that does not go on: a function of its own, so that a usual sample does not save the registers it needs.
     #[cold]
     #[inline(never)]
     fn step_rare(

@@ -61,8 +61,11 @@ pub(crate) fn run(board: &Board, path: &str, words: &[String], log: Log) -> anyh
         }
         std::thread::sleep(Duration::from_millis(2));
     };
-    copied?;
     let code = status.code().context("the emulator was killed")?;
+    // An image that failed says so by its own code, whatever became of its log.
+    if code == 0 {
+        copied?;
+    }
     Ok(u8::try_from(code).unwrap_or(u8::MAX))
 }
 

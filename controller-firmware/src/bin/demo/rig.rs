@@ -4,6 +4,7 @@
 
 use core::cell::RefCell;
 use core::convert::Infallible;
+use core::sync::atomic::{AtomicU16, Ordering};
 use critical_section::Mutex;
 use embedded_hal::pwm::SetDutyCycle;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
@@ -23,19 +24,20 @@ struct Heater {
     next: usize,
     element: f32,
     plate: f32,
-    duty: u16,
     /// Somebody opens the door: percent of the power that is lost.
     draught: f32,
     unplugged: bool,
     count: u32,
 }
 
+/// The register of the modulator: it can be written from anywhere, at any time.
+static DUTY: AtomicU16 = AtomicU16::new(0);
+
 static HEATER: Mutex<RefCell<Heater>> = Mutex::new(RefCell::new(Heater {
     line: [0.0; DELAY],
     next: 0,
     element: 0.0,
     plate: 0.0,
-    duty: 0,
     draught: 0.0,
     unplugged: false,
     count: 0,
@@ -57,12 +59,12 @@ pub(crate) fn unplug(unplugged: bool) {
 
 /// Turns the heater off, whatever else goes on: the last thing that happens after a fault.
 pub(crate) fn off() {
-    with(|heater| heater.duty = 0);
+    DUTY.store(0, Ordering::Relaxed);
 }
 
 impl Heater {
     fn pass_10_ms(&mut self) {
-        let power = 100.0 * f32::from(self.duty) / f32::from(FULL) - self.draught;
+        let power = 100.0 * f32::from(DUTY.load(Ordering::Relaxed)) / f32::from(FULL) - self.draught;
         let late = core::mem::replace(&mut self.line[self.next], power);
         self.next = (self.next + 1) % DELAY;
         self.element += 0.05 * (1.2 * late - self.element);
@@ -125,7 +127,7 @@ impl SetDutyCycle for Power {
     }
 
     fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
-        with(|heater| heater.duty = duty);
+        DUTY.store(duty, Ordering::Relaxed);
         Ok(())
     }
 }
