@@ -56,7 +56,7 @@ const SMALL: u32 = 1 << 20;
 /// The words of the command that builds the image, without `cargo`, and what it sets in the environment.
 fn words(board: &Board) -> Vec<String> {
     let mut words: Vec<String> =
-        ["build", "-p", "controller-firmware", "--bin", "pil", "--release", "--target"]
+        ["build", "-p", "controller-firmware", "--bin", "pil", "--features", "pil", "--release", "--target"]
             .map(String::from)
             .to_vec();
     words.push(board.target.to_owned());
@@ -135,9 +135,9 @@ mod tests {
     #[test]
     fn boards_that_share_a_target_are_built_apart() {
         let [usual, other] = ["mps2-an386", "mps2-an500"].map(|name| command(named(name).expect("a board")));
-        assert!(
-            usual.starts_with("cargo build -p controller-firmware --bin pil --release --target thumbv7em")
-        );
+        assert!(usual.starts_with(
+            "cargo build -p controller-firmware --bin pil --features pil --release --target thumbv7em"
+        ));
         assert!(
             other.starts_with("CONTROLLER_BOARD=mps2-an500 RUSTFLAGS=-Ctarget-cpu=cortex-m7 cargo build")
         );
