@@ -121,6 +121,8 @@ fn clippy(root: &Path) -> Outcome<Done> {
             "--bins",
             "--test",
             "on_target",
+            "--features",
+            "pil",
             "--target",
             target,
         ])
