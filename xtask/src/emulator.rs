@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use controller_pil::board::{BOARDS, Board};
 
+use crate::failing;
 use crate::ladder::Done;
 use crate::packages;
 use crate::setup::{self, Part};
@@ -97,8 +98,9 @@ pub(crate) fn on_target(root: &Path) -> Outcome<Done> {
         let cmd = Cmd::cargo(root).args(["test", "-p", FIRMWARE]);
         for_board(cmd, root, board).run()?;
     }
+    let failing = failing::check(root)?;
     let cores: Vec<&str> = BOARDS.iter().map(|board| board.core).collect();
-    Ok(Done::Passed(cores.join(", ")))
+    Ok(Done::Passed(format!("{}; {failing}", cores.join(", "))))
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@
 //! | [`long_runs`] | scenarios of any length for these |
 //! | [`board_demo`] | the demo of the firmware, whose log is committed |
 //! | [`checks`] | pure checks: dependency allow-list, same bits, file hygiene |
+//! | [`failing`] | images that fail on purpose: their exit codes, their outputs off |
 //! | [`fuzz`] | bounded and long runs of the fuzz targets |
 //! | [`manifest`] | a reader for the few TOML files of this workspace |
 //! | [`size`] | what the blocks cost on the emulated boards |
@@ -30,6 +31,7 @@ mod board_demo;
 mod browser;
 mod checks;
 mod emulator;
+mod failing;
 mod fuzz;
 mod ladder;
 mod long_runs;

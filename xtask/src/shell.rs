@@ -72,10 +72,15 @@ impl Cmd {
 
     /// Prints the command and runs it, whatever comes of it: whether it succeeded, and all it printed.
     pub(crate) fn attempt(&self) -> Outcome<(bool, String)> {
+        self.ended().map(|(code, text)| (code == Some(0), text))
+    }
+
+    /// Prints the command and runs it, whatever comes of it: its exit code, and all it printed.
+    pub(crate) fn ended(&self) -> Outcome<(Option<i32>, String)> {
         println!("  $ {self}");
         let output = self.command().output().map_err(|e| self.not_started(&e))?;
         let text = [output.stdout, output.stderr].concat();
-        Ok((output.status.success(), String::from_utf8_lossy(&text).into_owned()))
+        Ok((output.status.code(), String::from_utf8_lossy(&text).into_owned()))
     }
 
     /// Asks a question quietly: the output when the command succeeds, else nothing.

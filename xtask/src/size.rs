@@ -14,8 +14,8 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
+use crate::emulator;
 use crate::ladder::Done;
-use crate::setup::{self, Part, Toolchain};
 use crate::shell::{Cmd, Outcome};
 
 /// The table for people.
@@ -76,11 +76,8 @@ pub(crate) fn run(root: &Path, then: Then) -> Outcome<String> {
 
 /// The rung.
 pub(crate) fn rung(root: &Path) -> Outcome<Done> {
-    if let Some(message) = setup::lacking(root, Part::Target, &Toolchain::read(root)?.targets)? {
-        return Ok(Done::Lacking(message));
-    }
-    if Cmd::new("qemu-system-arm", root).arg("--version").probe().is_none() {
-        return Ok(Done::Lacking("qemu-system-arm is missing; run: cargo xtask setup".into()));
+    if let Some(end) = emulator::lacking(root)? {
+        return Ok(end);
     }
     run(root, Then::Check).map(Done::Passed)
 }

@@ -140,8 +140,8 @@ pub(super) fn finish(
         warn(&mut warnings, Warning::Value { about: "Ms", value: ms, text });
     }
     if let Some(samples) = few_samples(&sampled.margins, request.ts) {
-        let text = "samples, less than 10: the sampling itself costs robustness; choose a shorter ts";
-        warn(&mut warnings, Warning::Value { about: "delay margin", value: samples, text });
+        let text = "fewer than 10, the sampling itself costs robustness: choose a shorter ts";
+        warn(&mut warnings, Warning::Value { about: "delay margin in samples", value: samples, text });
     }
     Ok(Design {
         method: request.method,

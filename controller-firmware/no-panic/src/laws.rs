@@ -40,6 +40,8 @@ pub(crate) fn keep_all<T: Real>() {
         Dob::<T>::step => fn(&_, &mut _, _) -> _,
         ThirdOrder::<T>::new => fn(&_, _) -> _,
         ThirdOrder::<T>::step => fn(&_, &mut _, _) -> _,
+        De::<T>::settled => fn(&_, _, _) -> _,
+        Dob::<T>::settled => fn(&_, _, _) -> _,
         Largest::<T>::step => fn(&_, &mut _, _) -> _,
         Any::<T>::new => fn(&_, _, _) -> _,
         Any::<T>::state => fn(&_, _) -> _,

@@ -9,6 +9,8 @@ pub(crate) fn keep_all<T: Real>() {
         Controller::<T>::new => fn(&_, _) -> _,
         Controller::<T, NoCompensator, Adrc<T>>::with_adrc => fn(&_, &_, _) -> _,
         Controller::<T, De<T>>::with_compensator => fn(&_, _, _) -> _,
+        Controller::<T>::zeroed => fn(&_) -> _,
+        Controller::<T, De<T>>::zeroed => fn(&_) -> _,
         Controller::<T, Any<T>>::with_compensator => fn(&_, _, _) -> _,
     }
     whole::<T, NoCompensator, Pid<T>>();

@@ -18,6 +18,8 @@ fn main() {
 #[cfg(target_os = "none")]
 mod blocks;
 #[cfg(target_os = "none")]
+mod hardware;
+#[cfg(target_os = "none")]
 mod laws;
 #[cfg(target_os = "none")]
 mod loops;
@@ -43,6 +45,9 @@ fn main() -> ! {
     laws::keep_all::<f64>();
     loops::keep_all::<f32>();
     loops::keep_all::<f64>();
+    hardware::keep_all::<f32>();
+    hardware::keep_all::<f64>();
+    hardware::keep_single();
     #[cfg(feature = "unchecked-index")]
     keep!(unchecked => fn(&_, _) -> _);
     loop {

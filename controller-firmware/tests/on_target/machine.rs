@@ -81,7 +81,8 @@ fn stack_of_a_step() {
         black_box(());
     });
     print!("{most} bytes, of which {nothing} for the call ... ");
-    assert!(nothing <= 32 && most > nothing && most <= 640);
+    // A kibibyte is what small operating systems give a task; the table of costs has the exact figures.
+    assert!(nothing <= 32 && most > nothing && most <= 1024);
 }
 
 /// A law is built where there is time, but perhaps not much memory: the faults it could have take most of it.

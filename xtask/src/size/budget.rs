@@ -29,13 +29,14 @@ pub(super) const BUDGETS: [Budget; 5] = [
 ];
 
 /// Why a whole loop takes more than was hoped for.
-const LOOP: &str = "a closed loop's usual sample (nominal) also asks for the mode, the sample's quality, read-back, \
-                    inhibition and alarms, which the trial behind the budget did not have in full; the most is a sample \
-                    that changes the mode, starts or settles the loop and refuses inputs, all at once: parts of two laws";
+const LOOP: &str = "a usual sample (nominal) asks about mode, quality, read-back, inhibition and alarms at 3 to 4 \
+                    instructions each; the most is a sample that changes the mode, starts or settles the loop and \
+                    refuses inputs, all at once: parts of two laws";
 
 /// Why the stack of a whole loop is more than [`STACK`].
-const LOOP_STACK: &str = "the steps of whole loops call the functions for rare samples (another mode, a bad measurement, \
-                          settling), each with a frame of its own; a usual sample needs the first of these frames only";
+const LOOP_STACK: &str = "no whole loop keeps to it: the first frame alone, which is all that a usual sample needs, is \
+                          72 to 112 bytes, and the functions for rare samples (another mode, a bad measurement, \
+                          settling) add theirs";
 
 /// The budget of a row, if it has one.
 pub(super) fn of(row: &Row) -> Option<&'static Budget> {
