@@ -46,7 +46,7 @@ mod target {
     #[entry]
     fn main() -> ! {
         let words = semihosting::experimental::env::args::<64>();
-        let word = words.as_ref().ok().and_then(|words| words.skip(1).next()).and_then(Result::ok);
+        let word = words.as_ref().ok().and_then(|mut words| words.nth(1)).and_then(Result::ok);
         image::on_fault(if word == Some("twice") { off_and_fail } else { off });
         if let Some(peripherals) = cortex_m::Peripherals::take() {
             let mut timer = peripherals.SYST;
