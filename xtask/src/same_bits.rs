@@ -72,11 +72,7 @@ const SECONDS: u32 = 900;
 
 /// The rung.
 pub(crate) fn rung(root: &Path) -> Outcome<Done> {
-    let mut outputs = Vec::new();
-    for variant in &VARIANTS {
-        outputs.push((variant.name, on_host(root, variant, SAMPLES, "both")?));
-    }
-    let lines = checks::same_output(&outputs)?;
+    let (outputs, lines) = on_hosts(root, SAMPLES)?;
     check_hash(&outputs[0].1, HASH)?;
     let remark = format!("{HASH} in {} builds for this machine ({lines} traces)", outputs.len());
     Ok(match emulator::lacking(root)? {
@@ -88,10 +84,26 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
 
 /// The long runs.
 pub(crate) fn soak(root: &Path) -> Outcome {
+    let (outputs, lines) = on_hosts(root, SOAK * SAMPLES)?;
+    println!(
+        "{} builds for this machine agree in {lines} traces of {} samples",
+        outputs.len(),
+        SOAK * SAMPLES
+    );
     match emulator::lacking(root)? {
         None => in_images(root, SOAK).map(|remark| println!("{remark}")),
         Some(Done::Lacking(message) | Done::Skipped(message) | Done::Passed(message)) => Err(message),
     }
+}
+
+/// What every build for the host prints, and of how many traces each.
+fn on_hosts(root: &Path, samples: u32) -> Outcome<(Vec<(&'static str, String)>, usize)> {
+    let mut outputs = Vec::new();
+    for variant in &VARIANTS {
+        outputs.push((variant.name, on_host(root, variant, samples, "both")?));
+    }
+    let lines = checks::same_output(&outputs)?;
+    Ok((outputs, lines))
 }
 
 /// What one build for the host prints.

@@ -5,11 +5,13 @@
 //! | [`measure`] | building and running the meter's images, reading what they print |
 //! | [`budget`] | what a step may cost |
 //! | [`table`] | the committed table |
-//! | [`markdown`] | the table for people, beside other controllers |
+//! | [`markdown`] | the table for people |
+//! | [`peers`] | other controllers beside ours, in that table and in the README |
 
 mod budget;
 mod markdown;
 mod measure;
+mod peers;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -20,6 +22,11 @@ use crate::shell::{Cmd, Outcome};
 
 /// The table for people.
 const PAGE: &str = "controller-firmware/COSTS.md";
+
+/// Where the comparison with other controllers is shown, and the lines that begin and end it there.
+const README: &str = "README.md";
+const BEGIN: &str = "<!-- costs: written by cargo xtask size --update -->\n";
+const END: &str = "<!-- end of costs -->\n";
 
 /// What to do with what is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,8 +46,12 @@ pub(crate) fn run(root: &Path, then: Then) -> Outcome<String> {
     let number = version.split_whitespace().nth(1).ok_or_else(|| format!("what version is `{version}`?"))?;
     let rows = measure::all(root)?;
     let (text, page) = (table::text(&rows, version), markdown::page(&rows, version));
-    let tables: [(PathBuf, &str); 2] =
-        [(Path::new("tests/target").join(format!("size-{number}.txt")), &text), (PAGE.into(), &page)];
+    let readme = readme(root, &peers::table(&rows))?;
+    let tables: [(PathBuf, &str); 3] = [
+        (Path::new("tests/target").join(format!("size-{number}.txt")), &text),
+        (PAGE.into(), &page),
+        (README.into(), &readme),
+    ];
     match then {
         Then::Markdown => print!("{page}"),
         Then::Update => {
@@ -72,6 +83,14 @@ pub(crate) fn run(root: &Path, then: Then) -> Outcome<String> {
     }
     budget::check(&rows)?;
     Ok(format!("{} blocks as in the table", rows.len()))
+}
+
+/// The README with `table` in its place.
+fn readme(root: &Path, table: &str) -> Outcome<String> {
+    let now = std::fs::read_to_string(root.join(README)).map_err(|e| format!("{README}: {e}"))?;
+    let parts = now.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+    let (before, after) = parts.ok_or_else(|| format!("{README} has no place for the costs: {BEGIN}"))?;
+    Ok(format!("{before}{BEGIN}\n{table}\n{END}{after}"))
 }
 
 /// The rung.

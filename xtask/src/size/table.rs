@@ -52,7 +52,7 @@ pub(super) fn text(rows: &[Row], compiler: &str) -> String {
             text.push_str(&format!("    {}\n", classes.join(", ")));
         }
         if let Some(budget) = budget::of(row) {
-            let hand = budget.by_hand.map(|count| format!(", by hand {count}")).unwrap_or_default();
+            let hand = format!(", by hand {}", budget.by_hand);
             let note = budget.known.map(|note| format!("; note: {note}")).unwrap_or_default();
             text.push_str(&format!("    budget {}{hand}{note}\n", budget.most));
         }
