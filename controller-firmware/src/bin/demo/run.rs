@@ -1,147 +1,134 @@
-//! Start-up and main loop: sets the timer, logs what the task reports, retunes it.
+//! Start-up and interrupts.
 
-use crate::heater_law::{self, Law, TS};
-use crate::rig::{self, Bus, COUNTS_PER_DEGREE, Power};
-use crate::task::{LAW, SETPOINT, TRACE, Task};
-use controller_core::{ConfigErrors, ControllerConfig, Mode, PidConfig, Status, TraceSample};
+use crate::heater::{self, Heater};
+use crate::oven::{self, Oven};
+use crate::{heater_law, oven_law, rig, watch};
+use controller_core::ConfigErrors;
 use controller_firmware::image;
-use controller_hal::{CountSpan, Mcp3201, OnInvalid, OutputConfig, Pwm, SpanConfig};
-use core::cell::{Cell, RefCell};
+use core::cell::RefCell;
+use core::sync::atomic::{AtomicU32, Ordering};
+use cortex_m::peripheral::SCB;
+use cortex_m::peripheral::scb::SystemHandler;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
 use defmt_semihosting as _;
 
-/// Clock of the system timer \[Hz\].
-const CLOCK: u32 = controller_firmware::CLOCK;
-/// Ticks from one sample to the next, from the sampling period that the law was designed for.
-const TICKS: u32 = (TS * CLOCK as f64) as u32;
-const _: () = assert!(TICKS >= 1 && TICKS < 1 << 24, "the system timer cannot count the sampling period");
+/// Sampling period of the fast loop, and tick of the relay \[ms\].
+const PERIOD_MS: u32 = (1e3 * heater_law::TS + 0.5) as u32;
+/// Clocks of the system timer in it, from the period that the law was designed for.
+const CLOCKS: u32 = (heater_law::TS * controller_firmware::CLOCK as f64 + 0.5) as u32;
+const _: () = assert!(CLOCKS >= 1 && CLOCKS <= 1 << 24, "the system timer cannot count the sampling period");
 
-/// Length of the demo \[samples\].
-const SAMPLES: u32 = 1000;
+/// Periods of the fast loop in one of the slow loop.
+const SLOWER: u32 = (oven_law::TS / heater_law::TS + 0.5) as u32;
+const _: () = {
+    let difference = oven_law::TS - heater_law::TS * SLOWER as f64;
+    assert!(difference < 1e-9 && difference > -1e-9, "the slow period is not a multiple of the fast one");
+};
 
-static TASK: Mutex<RefCell<Option<Task>>> = Mutex::new(RefCell::new(None));
-static MILLISECONDS: Mutex<Cell<u32>> = Mutex::new(Cell::new(0));
+/// Periods since the start. Only the timer interrupt writes it.
+static PERIODS: AtomicU32 = AtomicU32::new(0);
+/// The loops, on their way from `main` to the control interrupt.
+static LOOPS: Mutex<RefCell<Option<Loops>>> = Mutex::new(RefCell::new(None));
 
-defmt::timestamp!("{=u32:tms}", critical_section::with(|cs| MILLISECONDS.borrow(cs).get()));
+defmt::timestamp!("{=u32:tms}", PERIOD_MS.wrapping_mul(periods()));
+
+/// Periods since the start.
+pub(crate) fn periods() -> u32 {
+    PERIODS.load(Ordering::Relaxed)
+}
 
 #[entry]
 fn main() -> ! {
     image::on_fault(rig::off);
     match start() {
-        Ok(()) => watch(),
+        Ok(()) => watch::run(),
         Err(faults) => {
-            defmt::error!("the loop cannot be built: {}", faults);
+            defmt::error!("a loop cannot be built: {}", faults);
             image::exit(1)
         }
     }
 }
 
+#[inline(never)]
 fn start() -> Result<(), ConfigErrors> {
-    let law = heater_law::law()?;
-    let span = SpanConfig::new((0, 100 * COUNTS_PER_DEGREE), (0.0, 100.0));
-    let sensor = Mcp3201::new(Bus, CountSpan::new(&span)?);
-    let range = OutputConfig { lo: 0.0, hi: 100.0, invalid: OnInvalid::Safe(0.0) };
-    let task = Task::new(law, sensor, Pwm::new(Power, &range)?);
-    critical_section::with(|cs| TASK.borrow_ref_mut(cs).replace(task));
-    // The one peripheral of the board that the demo uses.
-    if let Some(peripherals) = cortex_m::Peripherals::take() {
+    assemble(&heater::law()?, &oven::law()?)?;
+    // The peripherals of the processor are all that the demo uses of the board.
+    if let Some(mut peripherals) = cortex_m::Peripherals::take() {
+        // SAFETY: no critical section here goes by priorities: it turns all interrupts off.
+        unsafe { peripherals.SCB.set_priority(SystemHandler::PendSV, u8::MAX) };
         let mut timer = peripherals.SYST;
         timer.set_clock_source(SystClkSource::Core);
-        timer.set_reload(TICKS - 1);
+        timer.set_reload(CLOCKS - 1);
         timer.clear_current();
         timer.enable_counter();
         timer.enable_interrupt();
     }
-    defmt::info!("the loop runs every {=u32} ms", (1e3 * TS) as u32);
+    defmt::info!(
+        "the heater's loop runs every {=u32} ms, the oven's every {=u32}",
+        PERIOD_MS,
+        SLOWER * PERIOD_MS
+    );
     Ok(())
 }
 
+/// Brings laws and drivers together and leaves them where the control interrupt finds them.
+#[inline(never)]
+fn assemble(heater: &heater_law::Law, oven: &oven_law::Law) -> Result<(), ConfigErrors> {
+    let loops = Loops { heater: Heater::new(heater)?, oven: Oven::new(oven)?, now: 0, oven_at: 0 };
+    critical_section::with(|cs| LOOPS.borrow_ref_mut(cs).replace(loops));
+    Ok(())
+}
+
+/// The timer: short, and above the control tasks, so that it counts every period whatever they do.
 #[exception]
 fn SysTick() {
-    // Moved here with the first interrupt: from then on nobody has to ask for it.
-    static mut OWN: Option<Task> = None;
+    PERIODS.store(periods().wrapping_add(1), Ordering::Relaxed);
+    rig::pass_10_ms();
+    oven::tick();
+    SCB::set_pendsv();
+}
+
+/// The control interrupt: below the timer, above `main`.
+#[exception]
+fn PendSV() {
+    static mut OWN: Option<Loops> = None;
     if OWN.is_none() {
-        *OWN = critical_section::with(|cs| TASK.borrow_ref_mut(cs).take());
+        fetch(OWN);
     }
-    if let Some(task) = OWN {
-        task.sample();
+    if let Some(loops) = OWN {
+        loops.sample(periods());
     }
-    critical_section::with(|cs| {
-        let now = MILLISECONDS.borrow(cs);
-        now.set(now.get() + (1e3 * TS) as u32);
-    });
 }
 
-/// The main loop: what is not urgent.
-fn watch() -> ! {
-    let (mut mode, mut status) = (Mode::Hold, Status::NONE);
-    loop {
-        while let Some(sample) = TRACE.pop() {
-            report(&sample, &mut mode, &mut status);
-            scene(sample.k);
+/// With the first interrupt the loops become its own: from then on nobody has to ask for them.
+#[inline(never)]
+fn fetch(own: &mut Option<Loops>) {
+    *own = critical_section::with(|cs| LOOPS.borrow_ref_mut(cs).take());
+}
+
+struct Loops {
+    heater: Heater,
+    oven: Oven,
+    /// Periods up to the last sample of each.
+    now: u32,
+    oven_at: u32,
+}
+
+impl Loops {
+    /// What is due in period `now`. Requests for this interrupt that came while it ran are one: the count tells how many.
+    fn sample(&mut self, now: u32) {
+        let passed = now.wrapping_sub(self.now);
+        if passed == 0 {
+            return;
         }
-        // Sleeps until the next interrupt.
-        cortex_m::asm::wfi();
-    }
-}
-
-/// Logs changes of mode and status, and a line every second.
-fn report(sample: &TraceSample<f32>, mode: &mut Mode, status: &mut Status) {
-    if sample.mode != *mode {
-        defmt::info!("mode {} (was {})", sample.mode, *mode);
-        *mode = sample.mode;
-    }
-    // Limits come and go with noise; faults are what somebody must see.
-    let faults = |status: Status| status.bits() & (Status::BAD_INPUT | Status::FALLBACK).bits();
-    if faults(sample.status) != faults(*status) {
-        if faults(sample.status) == 0 {
-            defmt::info!("sample {=u32}: the sensor is back", sample.k);
-        } else {
-            defmt::warn!("sample {=u32}: {}", sample.k, sample.status);
+        self.now = now;
+        self.heater.sample(now, passed - 1);
+        let due = now.wrapping_sub(self.oven_at) / SLOWER;
+        if due > 0 {
+            self.oven_at = self.oven_at.wrapping_add(due * SLOWER);
+            self.oven.sample(now, due - 1);
         }
-        *status = sample.status;
     }
-    if sample.k.is_multiple_of(100) {
-        // In tenths: whole numbers need no formatting of floats on the host's side to be compared.
-        let tenths = |x: f32| (10.0 * x + if x < 0.0 { -0.5 } else { 0.5 }) as i32;
-        defmt::info!(
-            "r {=i32} y {=i32} u {=i32} d {=i32} [0.1 degC, 0.1 %]",
-            tenths(sample.r),
-            tenths(sample.y),
-            tenths(sample.u),
-            tenths(sample.d_hat)
-        );
-    }
-}
-
-/// What happens to the loop, by the number of the sample.
-fn scene(k: u32) {
-    match k {
-        100 => critical_section::with(|cs| SETPOINT.borrow(cs).set(60.0)),
-        400 => rig::draught(15.0),
-        550 => rig::unplug(true),
-        620 => rig::unplug(false),
-        750 => match slower() {
-            Ok(law) => {
-                let generation = LAW.publish(law);
-                defmt::info!("parameters {=u32}: half the gain", generation);
-            }
-            Err(faults) => defmt::error!("parameters refused: {}", faults),
-        },
-        800 => critical_section::with(|cs| SETPOINT.borrow(cs).set(50.0)),
-        SAMPLES => {
-            defmt::info!("done; {=u32} records lost", TRACE.dropped());
-            image::exit(0)
-        }
-        _ => {}
-    }
-}
-
-/// Another tuning, built and checked where there is time: the same loop with half the gain.
-fn slower() -> Result<Law, ConfigErrors> {
-    let PidConfig { kp, ki, kd, .. } = heater_law::CONTROLLER.pid;
-    let pid = PidConfig { kp: 0.5 * kp, ki: 0.5 * ki, kd: 0.5 * kd, ..heater_law::CONTROLLER.pid };
-    heater_law::law_of(&ControllerConfig { pid, ..heater_law::CONTROLLER })
 }

@@ -1,0 +1,37 @@
+//! The guide's first loop. `README.md` shows `control.rs` and `main` below as they stand here; a check compares them.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod board;
+#[cfg(target_os = "none")]
+mod control;
+#[cfg(target_os = "none")]
+#[path = "../demo/heater_law.rs"]
+#[rustfmt::skip]
+#[allow(dead_code, unreachable_pub, reason = "exported: what it offers is not all used here")]
+mod loop_law;
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    let heater = board::Heater::new();
+    let (spi, pwm) = (board::Converter(&heater), board::Channel(&heater)); // drivers of your board's crate
+    let mut control = control::Control::new(spi, pwm).expect("the laws of this image are valid");
+
+    let mut timer = cortex_m::Peripherals::take().expect("nobody else has taken them").SYST;
+    timer.set_clock_source(cortex_m::peripheral::syst::SystClkSource::Core);
+    timer.set_reload((board::CLOCK as f64 * loop_law::TS) as u32 - 1);
+    timer.clear_current();
+    timer.enable_counter();
+    loop {
+        while !timer.has_wrapped() {}
+        control.sample(60.0);
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    println!(
+        "first: runs on a microcontroller; in the folder controller-firmware: cargo run --release --bin first"
+    );
+}
