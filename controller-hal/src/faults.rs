@@ -10,6 +10,8 @@ pub(crate) const RANGE_LIMIT: f64 = 1e12;
 pub(crate) struct Faults(ConfigErrors);
 
 impl Faults {
+    /// Not inlined: a list of faults is some hundred bytes, and who finds many of them would have room for each on its stack.
+    #[inline(never)]
     pub(crate) fn fault(&mut self, param: Param, reason: Reason, value: f64, min: f64, max: f64) {
         self.0 = self.0.and(&ConfigError { param, reason, value, min, max }.into());
     }
