@@ -1,17 +1,31 @@
-//! The firmware's demo, as a user starts it: what it logs is committed.
+//! The firmware's demo, as a user starts it and on every board: what it logs is committed. And the loop of the guide.
 
 use std::path::Path;
+use std::time::Instant;
 
-use crate::emulator;
+use controller_pil::board::BOARDS;
+
+use crate::emulator::{self, REFERENCE};
 use crate::ladder::Done;
 use crate::shell::{Cmd, Outcome};
 
 /// The folder in which a user types `cargo run --release`.
 const FOLDER: &str = "controller-firmware";
-/// What the demo logs, decoded.
+/// What the demo logs, decoded: the same on every board.
 const EXPECTED: &str = "demo/expected.txt";
 /// Set to write that file anew.
 const RENEW: &str = "RENEW_DEMO";
+/// Seconds that an image may take.
+const SECONDS: u32 = 60;
+
+/// Design files of the demo's loops and the modules that are exported from them.
+const LAWS: [(&str, &str); 2] = [("demo/loop.toml", "heater_law.rs"), ("demo/oven.toml", "oven_law.rs")];
+
+/// The image of the guide, what it prints at its end, and what of it the guide shows: whole files, or from a line on.
+const FIRST: &str = "first";
+const FIRST_ENDS: &str = "after 800 samples: 600 tenths of a degree\n";
+const SHOWN: [(&str, &str); 2] = [("control.rs", "use "), ("main.rs", "#[cortex_m_rt::entry]")];
+const GUIDE: &str = "README.md";
 
 /// The rung.
 pub(crate) fn rung(root: &Path) -> Outcome<Done> {
@@ -19,15 +33,78 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
         return Ok(end);
     }
     let folder = root.join(FOLDER);
+    shown(&folder)?;
+    exported(root)?;
     let log = Cmd::new("cargo", &folder).args(["run", "--release"]).capture()?;
     print!("{log}");
     let file = folder.join(EXPECTED);
     if std::env::var_os(RENEW).is_some() {
         std::fs::write(&file, &log).map_err(|e| format!("cannot write {}: {e}", file.display()))?;
     }
-    let expected =
-        std::fs::read_to_string(&file).map_err(|e| format!("cannot read {}: {e}", file.display()))?;
-    same(&expected, &log).map(|lines| Done::Passed(format!("{lines} lines, as in {FOLDER}/{EXPECTED}")))
+    let expected = read(&file)?;
+    let lines = same(&expected, &log)?;
+    let mut took = 0.0;
+    for board in &BOARDS {
+        let image = emulator::image(root, board, "demo", &[])?;
+        let start = Instant::now();
+        let log = emulator::emulated(root, &image, &[], SECONDS).capture()?;
+        if board == REFERENCE {
+            took = start.elapsed().as_secs_f64();
+        }
+        same(&expected, &log).map_err(|e| format!("{} ({}): {e}", board.name, board.core))?;
+    }
+    let image = emulator::image(root, REFERENCE, FIRST, &[])?;
+    let text = emulator::emulated(root, &image, &[], SECONDS).capture()?;
+    if text != FIRST_ENDS {
+        return Err(format!("the guide's loop ends with\n  {text}and should with\n  {FIRST_ENDS}"));
+    }
+    Ok(Done::Passed(format!(
+        "{lines} lines on {} boards, as in {FOLDER}/{EXPECTED}; 10 s of the {} in {took:.2} s",
+        BOARDS.len(),
+        REFERENCE.core
+    )))
+}
+
+/// Checks that the laws in the demo are what is exported from its design files.
+fn exported(root: &Path) -> Outcome {
+    for (design, module) in LAWS {
+        let design = format!("{FOLDER}/{design}");
+        let text = Cmd::cargo(root)
+            .args(["run", "--quiet", "--release", "--package", "controller-sim-host", "--"])
+            .args(["export", &design, "--format", "rust"])
+            .capture()?;
+        let module = format!("{FOLDER}/src/bin/demo/{module}");
+        if read(&root.join(&module))? != text {
+            return Err(format!("{module} is not what is exported from {design}"));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that the guide's code is that of the image.
+fn shown(folder: &Path) -> Outcome {
+    let guide = read(&folder.join(GUIDE))?;
+    for (file, from) in SHOWN {
+        let text = read(&folder.join("src/bin").join(FIRST).join(file))?;
+        let part =
+            part(&text, from).ok_or_else(|| format!("{file} has no line that begins with `{from}`"))?;
+        if !guide.contains(&format!("```rust\n{part}```\n")) {
+            return Err(format!("{FOLDER}/{GUIDE} does not show {file} as it is compiled:\n{part}"));
+        }
+    }
+    Ok(())
+}
+
+/// From the first line that begins with `from` to the end, or to the first empty line after a closing brace at the margin that
+/// something conditional follows.
+fn part<'a>(text: &'a str, from: &str) -> Option<&'a str> {
+    let begin = if text.starts_with(from) { 0 } else { text.find(&format!("\n{from}"))? + 1 };
+    let part = text.get(begin..)?;
+    part.find("}\n\n#[cfg").map_or(Some(part), |end| part.get(..end + 2))
+}
+
+fn read(file: &Path) -> Outcome<String> {
+    std::fs::read_to_string(file).map_err(|e| format!("cannot read {}: {e}", file.display()))
 }
 
 /// Compares line by line; the number of lines if all are the same.
@@ -56,5 +133,14 @@ mod tests {
         assert_eq!(same("a\nb\n", "a\nb\n"), Ok(2));
         assert!(same("a\nb\n", "a\nc\n").unwrap_err().contains("line 2"));
         assert!(same("a\nb\n", "a\n").unwrap_err().contains("1 lines, 2"));
+    }
+
+    #[test]
+    fn a_part_ends_with_the_file_or_before_what_is_for_the_host() {
+        let text = "//! x\n\nuse a;\nfn b() {\n}\n\nfn c() {\n}\n\n#[cfg(not(x))]\nfn c() {}\n";
+        assert_eq!(part(text, "use "), Some("use a;\nfn b() {\n}\n\nfn c() {\n}\n"));
+        assert_eq!(part(text, "fn c"), Some("fn c() {\n}\n"));
+        assert_eq!(part("use a;\n", "use"), Some("use a;\n"));
+        assert_eq!(part(text, "struct"), None);
     }
 }
