@@ -1,7 +1,8 @@
 //! The processor and its stack.
 
 use controller_core::{
-    Controller, ControllerConfig, ControllerInput, ControllerOutput, Law, LimitConfig, PidConfig,
+    Compensator, ConfigErrors, Controller, ControllerConfig, ControllerInput, ControllerOutput,
+    EstimatorConfig, Law, LimitConfig, PidConfig,
 };
 use controller_firmware::image::print;
 use controller_firmware::stack;
@@ -49,6 +50,7 @@ fn whole_stack() {
 }
 
 type Loop = Controller<f32>;
+type Estimating = Controller<f32, Compensator<f32, 2, 1, 32>>;
 
 #[inline(never)]
 fn step(
@@ -92,4 +94,16 @@ fn stack_of_new() {
     let used = stack::used_by(|| law = Loop::new(black_box(&config), 0.01).ok());
     print!("{used} bytes ... ");
     assert!(law.is_some() && used <= 6 * 1024);
+    let block =
+        black_box(EstimatorConfig { gain: 1.2, a1: 1.2, a2: 0.2, dead_time: 0.2, kfd: 0.32, tfd: 0.315 });
+    let mut law = None;
+    let used = stack::used_by(|| law = estimating(black_box(&config), black_box(&block)).ok());
+    print!("with an estimator {used} bytes ... ");
+    assert!(law.is_some() && used <= 11 * 1024);
+}
+
+#[inline(never)]
+fn estimating(config: &ControllerConfig, block: &EstimatorConfig) -> Result<Estimating, ConfigErrors> {
+    let compensator = Compensator::new(&block.to_compensator(0.0), 0.01)?;
+    Controller::with_compensator(config, compensator, 0.01)
 }

@@ -13,6 +13,7 @@ pub(crate) struct Control<S: SpiDevice, P> {
 }
 
 impl<S: SpiDevice, P: SetDutyCycle> Control<S, P> {
+    #[inline(never)] // or `main`, which does not end, would keep the 10 KB of stack that this takes
     pub(crate) fn new(spi: S, pwm: P) -> Result<Self, ConfigErrors> {
         let law = loop_law::law()?; // no fault: it was checked when it was exported
         let span = CountSpan::new(&SpanConfig::new((0, 4000), (0.0, 100.0)))?; // counts, degC

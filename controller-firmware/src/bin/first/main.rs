@@ -14,13 +14,15 @@ mod loop_law;
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    const RELOAD: f64 = board::CLOCK as f64 * loop_law::TS - 1.0;
+    const { assert!(RELOAD >= 1.0 && RELOAD < 16_777_215.0, "not a period for the system timer") };
     let heater = board::Heater::new();
     let (spi, pwm) = (board::Converter(&heater), board::Channel(&heater)); // drivers of your board's crate
     let mut control = control::Control::new(spi, pwm).expect("the laws of this image are valid");
 
     let mut timer = cortex_m::Peripherals::take().expect("nobody else has taken them").SYST;
     timer.set_clock_source(cortex_m::peripheral::syst::SystClkSource::Core);
-    timer.set_reload((board::CLOCK as f64 * loop_law::TS) as u32 - 1);
+    timer.set_reload((RELOAD + 0.5) as u32);
     timer.clear_current();
     timer.enable_counter();
     loop {

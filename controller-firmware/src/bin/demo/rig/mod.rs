@@ -1,6 +1,6 @@
 //! The plants and their converters, simulated: what stands here is on a real board the drivers of its own crate.
 //!
-//! Everything outside this folder is the same there.
+//! Everything outside this folder is the same there, but for the calls of `pass_10_ms`, `off` and `recorded`.
 
 mod devices;
 mod plant;
