@@ -44,7 +44,7 @@ pub(crate) const RUNGS: [Rung; 18] = [
     Rung { name: "swap", about: "laws replaced under an interrupt: whole, without a bump", run: swap::rung },
     Rung {
         name: "board-demo",
-        about: "the demo on the emulated board logs what it should",
+        about: "the demo logs what it should on every board; the guide shows what is compiled",
         run: board_demo::rung,
     },
     Rung {
