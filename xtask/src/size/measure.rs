@@ -115,6 +115,8 @@ fn build(root: &Path, board: &Board) -> Outcome<PathBuf> {
     let mut cmd = Cmd::cargo(root)
         .env("CONTROLLER_BOARD", board.name)
         .env("RUSTC_BOOTSTRAP", "1")
+        // Incremental builds cut the code into other pieces.
+        .env("CARGO_INCREMENTAL", "0")
         .env("CARGO_ENCODED_RUSTFLAGS", &flags)
         .args(["build", "--quiet", "--release", "-p", "controller-firmware", "--target", board.target])
         .args(["--config=profile.release.debug=false", "--target-dir"])
