@@ -197,17 +197,29 @@ impl Reader<'_> {
         Some(())
     }
 
-    pub(crate) fn line<T: Real, M: Memory<T>>(&mut self, line: &mut DelayLine<M>) -> Option<()> {
+    /// The place of a line's newest sample; gives the size of the largest cell, without a step ahead.
+    pub(crate) fn line<T: Real, M: Memory<T>>(&mut self, line: &mut DelayLine<M>) -> Option<f64> {
         let newest = usize::try_from(self.word()?).ok()?;
         let (memory, place) = line.parts_mut();
-        let cells = memory.as_mut();
-        if newest >= cells.len() {
+        let cells = memory.as_ref().len();
+        if newest >= cells {
             return None;
         }
-        for cell in cells {
+        *place = newest;
+        let mut ahead = Reader { words: self.words };
+        let mut largest = 0.0_f64;
+        for _ in 0..cells {
+            let size = ahead.number::<T>()?.to_f64().abs();
+            largest = if size > largest { size } else { largest };
+        }
+        Some(largest)
+    }
+
+    /// A line's cells.
+    pub(crate) fn cells<T: Real, M: Memory<T>>(&mut self, memory: &mut M) -> Option<()> {
+        for cell in memory.as_mut() {
             *cell = self.number()?;
         }
-        *place = newest;
         Some(())
     }
 }

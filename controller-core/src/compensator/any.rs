@@ -188,6 +188,18 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     }
 }
 
+impl<T, M> AnyCompensatorState<T, M> {
+    /// Puts `memory` in the place of the delay memory; gives what was there. For borrowed memory that moves between two
+    /// samples: the cells must be the same, in the same order.
+    pub fn replace_memory(&mut self, memory: M) -> M
+    where
+        T: Real,
+        M: Memory<T>,
+    {
+        core::mem::replace(self.line.parts_mut().0, memory)
+    }
+}
+
 impl<T: Real, M> AnyCompensatorState<T, M> {
     #[inline(always)]
     fn view(&mut self) -> StateView<'_, T, M> {
@@ -278,7 +290,11 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
         state.as_ref().save(writer);
     }
 
-    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<f64> {
         state.view().restore(reader)
+    }
+
+    fn restore_line(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+        reader.cells(state.line.parts_mut().0)
     }
 }

@@ -211,6 +211,11 @@ pub trait Compensate<T: Real>: Sealed {
     /// Writes the state.
     fn save(state: &Self::State, writer: &mut Writer<'_>);
 
-    /// Reads a state back; `None` when a number is not finite or a place is outside the line.
-    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()>;
+    /// Reads back everything but the cells of the line, which it only looks at: the memory may be borrowed, and what is
+    /// refused must not have been written. Gives the size of the largest cell; `None` when a number is not finite or a
+    /// place is outside the line.
+    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<f64>;
+
+    /// Reads the cells of the line, which [`restore`](Self::restore) has looked at.
+    fn restore_line(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()>;
 }

@@ -259,7 +259,11 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
         state.as_ref().save(writer);
     }
 
-    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+    fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<f64> {
         state.view().restore(reader)
+    }
+
+    fn restore_line(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<()> {
+        reader.cells(state.line.parts_mut().0)
     }
 }

@@ -45,7 +45,10 @@ impl<T: Real> Compensate<T> for NoCompensator {
         0
     }
     fn save(_: &(), _: &mut Writer<'_>) {}
-    fn restore(_: &mut (), _: &mut Reader<'_>) -> Option<()> {
+    fn restore(_: &mut (), _: &mut Reader<'_>) -> Option<f64> {
+        Some(0.0)
+    }
+    fn restore_line(_: &mut (), _: &mut Reader<'_>) -> Option<()> {
         Some(())
     }
 }

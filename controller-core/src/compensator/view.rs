@@ -60,7 +60,7 @@ impl<T: Real, M: Memory<T>> StateView<'_, T, M> {
     }
 
     /// See [`super::Compensate::restore`].
-    pub(super) fn restore(self, reader: &mut Reader<'_>) -> Option<()> {
+    pub(super) fn restore(self, reader: &mut Reader<'_>) -> Option<f64> {
         reader.shape(self.lags.y.len(), self.lags.e.len(), self.line.capacity())?;
         reader.lags(self.lags.y)?;
         reader.lags(self.lags.u)?;

@@ -2,6 +2,7 @@
 
 use super::law::Controller;
 use super::state::ControllerState;
+use crate::anti_windup::AntiWindup;
 use crate::compensator::Compensate;
 use crate::mode::Mode;
 use crate::real::Real;
@@ -51,6 +52,33 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// into the integral term. A state whose signals are too large for the new gains settles where it is.
     /// Cost: two steps of the blocks without their delay line, and one read of every cell of it.
     pub fn adopt(&self, old: &Self, state: &mut ControllerState<T, C::State, L::State>) {
+        self.take_over((&old.law, &old.anti_windup), state, |law, state, y, u| {
+            (self.ts == old.ts).then(|| law.adopt(&old.compensator, state, y, u))
+        });
+    }
+
+    /// Takes `state` over from the loop `old` with another compensator, or with one in the place of none: as
+    /// [`adopt`](Self::adopt), but what the old compensator knew is lost. The new one, whose state is `compensator`, settles
+    /// at the last measurement and output; the last output of the old one goes into the integral term.
+    pub fn adopt_from<D: Compensate<T>>(
+        &self,
+        old: &Controller<T, D, L>,
+        state: ControllerState<T, D::State, L::State>,
+        compensator: C::State,
+    ) -> ControllerState<T, C::State, L::State> {
+        let mut state = state.with_compensator(compensator);
+        self.take_over((&old.law, &old.anti_windup), &mut state, |_, _, _, _| None);
+        state
+    }
+
+    /// What both ways of taking over share. `hand_over` gives by how much `u_f` jumps when the compensator's state can be
+    /// kept at a measurement and an output; else it settles there.
+    fn take_over(
+        &self,
+        (law, anti_windup): (&L, &AntiWindup<T>),
+        state: &mut ControllerState<T, C::State, L::State>,
+        hand_over: impl FnOnce(&C, &mut C::State, T, T) -> Option<T>,
+    ) {
         if !state.started {
             // Nothing has happened yet; only the shape may have to change.
             self.compensator.settle(&mut state.compensator, T::ZERO, T::ZERO);
@@ -60,21 +88,22 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         // What the old anti-windup rule still owes for the last sample.
         let u = state.u.value();
         let owed = if state.mode.is_automatic() {
-            old.anti_windup.correction(L::last_increment(&state.law), state.v, u)
+            anti_windup.correction(L::last_increment(&state.law), state.v, u)
         } else {
             T::ZERO
         };
         state.v = u;
-        if !self.holds(state) {
+        if !self.holds(state, 0.0) {
             self.settle_where_it_is(state);
             return;
         }
-        let lost = self.law.convert(&old.law, &mut state.law, self.seen(state.r.value(), state.y));
-        let jump = if self.ts == old.ts {
-            self.compensator.adopt(&old.compensator, &mut state.compensator, state.y, u)
-        } else {
-            self.compensator.settle(&mut state.compensator, state.y, u);
-            -state.u_f
+        let lost = self.law.convert(law, &mut state.law, self.seen(state.r.value(), state.y));
+        let jump = match hand_over(&self.compensator, &mut state.compensator, state.y, u) {
+            Some(jump) => jump,
+            None => {
+                self.compensator.settle(&mut state.compensator, state.y, u);
+                -state.u_f
+            }
         };
         let jump = if state.compensating { jump } else { T::ZERO };
         state.u_f = state.u_f + jump;
@@ -85,8 +114,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     }
 
     /// Whether the signals of `state`, which may come from a law with other ranges or from a snapshot, leave room for this
-    /// law's gains in the number type.
-    fn holds(&self, state: &ControllerState<T, C::State, L::State>) -> bool {
+    /// law's gains in the number type. `cell` is the size of a cell that the delay line is still to get.
+    fn holds(&self, state: &ControllerState<T, C::State, L::State>, cell: f64) -> bool {
         // The larger of a range and of what the state holds now.
         let size = |(lo, hi): (T, T), now: [T; 2]| {
             let [now, carry] = now.map(|x| x.magnitude().to_f64());
@@ -98,7 +127,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         let y = size(self.guard.range(), [state.y, T::ZERO]);
         let seen = y + r + self.deadband.width().to_f64();
         let law = self.law.reach(&state.law, r, seen, u + state.offset.magnitude().to_f64());
-        let signals = law + self.compensator.reach(&state.compensator, y, u);
+        let largest = if cell > u { cell } else { u };
+        let signals = law + self.compensator.reach(&state.compensator, y, largest);
         let numbers = [state.u.carry(), state.r.carry(), state.u.value(), state.r.value()];
         let more = [state.v, state.pd, state.u_f, state.y, state.r_asked, state.offset];
         let own: f64 = numbers.iter().chain(&more).map(|x| x.magnitude().to_f64()).sum();
@@ -205,8 +235,9 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         snapshot::read::<T, ()>(words, Self::body_words(state), |reader| {
             fresh.law = L::restore(reader)?;
             fresh.restore_own(reader)?;
-            C::restore(&mut fresh.compensator, reader)?;
-            self.holds(&fresh).then_some(())
+            let cell = C::restore(&mut fresh.compensator, reader)?;
+            self.holds(&fresh, cell).then_some(())?;
+            C::restore_line(&mut fresh.compensator, reader)
         })?;
         *state = fresh;
         Ok(())

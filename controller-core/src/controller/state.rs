@@ -122,6 +122,37 @@ impl<T: Real, S, P> ControllerState<T, S, P> {
         &self.compensator
     }
 
+    /// The compensator's state, to say where its delay memory is now
+    /// ([`AnyCompensatorState::replace_memory`](crate::AnyCompensatorState::replace_memory)).
+    pub fn compensator_mut(&mut self) -> &mut S {
+        &mut self.compensator
+    }
+
+    /// The same state around that of another compensator.
+    pub(super) fn with_compensator<O>(self, compensator: O) -> ControllerState<T, O, P> {
+        let Self { law, compensator: _, guard, mode, u, v, pd, u_f, y, r, r_asked, offset, .. } = self;
+        let Self { alarms, compensating, overrun, awake, started, .. } = self;
+        ControllerState {
+            law,
+            compensator,
+            guard,
+            mode,
+            u,
+            v,
+            pd,
+            u_f,
+            y,
+            r,
+            r_asked,
+            offset,
+            alarms,
+            compensating,
+            overrun,
+            awake,
+            started,
+        }
+    }
+
     /// The flags as one word, which they are in memory, too.
     #[inline(always)]
     pub(super) fn flags(&self) -> u32 {
