@@ -133,6 +133,13 @@ pub struct Config {
 #[allow(clippy::cast_possible_truncation)]
 pub const STRUCT_SIZE: u32 = size_of::<Config>() as u32;
 
+const _: () = {
+    use core::mem::offset_of;
+    assert!(size_of::<Config>() == 608 && align_of::<Config>() == 8);
+    assert!(offset_of!(Config, struct_size) == 0 && offset_of!(Config, ts) == 56);
+    assert!(offset_of!(Config, model_pole_a1) == 352 && offset_of!(Config, model_zero_a2) == 544);
+};
+
 impl Default for Config {
     fn default() -> Self {
         let core = ControllerConfig::default();

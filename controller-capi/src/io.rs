@@ -146,3 +146,14 @@ impl<T: Real> Output<T> {
         Self { u, v: u, mode: mode::number(mode), status, ..Self::default() }
     }
 }
+
+// On this side the layout is asserted for every target that is built; the C side asserts each field (`tests/c/layout.c`).
+const _: () = {
+    use core::mem::offset_of;
+    assert!(size_of::<Input<f32>>() == 60 && size_of::<Input<f64>>() == 88);
+    assert!(offset_of!(Input<f32>, mode) == 28 && offset_of!(Input<f64>, mode) == 56);
+    assert!(size_of::<Output<f32>>() == 44 && size_of::<Output<f64>>() == 72);
+    assert!(offset_of!(Output<f32>, mode) == 28 && offset_of!(Output<f64>, mode) == 56);
+    assert!(align_of::<Input<f32>>() == 4 && align_of::<Input<f64>>() == 8);
+    assert!(align_of::<Output<f32>>() == 4 && align_of::<Output<f64>>() == 8);
+};

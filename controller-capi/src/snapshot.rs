@@ -110,6 +110,10 @@ pub(crate) unsafe fn restore<T: Number>(
     if u32::from(kind) != block.kind() as u32 || rest != 0 {
         return Err(Error::SnapshotShape);
     }
+    // The core reads its version and shape from two words.
+    if state.len() < 2 {
+        return Err(Error::Buffer);
+    }
     let known = |number: u8| mode::requested(number.into()).map(mode::number).ok_or(Error::SnapshotInvalid);
     let (set, asked) = (known(set)?, known(asked)?);
     let last = block.with(|l| l.restore(state), |l| l.restore(state))?;
