@@ -1,0 +1,151 @@
+//! Compilers and tools: which are there, building a program against the archive, running it.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+use std::{fs, io::Write};
+
+/// A program that this machine may lack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tool {
+    Gcc,
+    Clang,
+    ArmGcc,
+    Valgrind,
+}
+
+impl Tool {
+    fn command(self) -> &'static str {
+        match self {
+            Self::Gcc => "gcc",
+            Self::Clang => "clang",
+            Self::ArmGcc => "arm-none-eabi-gcc",
+            Self::Valgrind => "valgrind",
+        }
+    }
+}
+
+/// Says, past the test harness, which would swallow it, what this run leaves out.
+pub(crate) fn not_run(what: &str) {
+    // Nothing depends on whether it can be written.
+    let _ = writeln!(std::io::stderr(), "\nnot run: {what}; `cargo xtask setup` installs it");
+}
+
+/// Those of the tools that are there; the others are named.
+pub(crate) fn available(tools: &[Tool]) -> Vec<Tool> {
+    let there = |tool: &Tool| {
+        let found = Command::new(tool.command()).arg("--version").output().is_ok_and(|o| o.status.success());
+        if !found {
+            not_run(&format!("C interface with {}, which is missing", tool.command()));
+        }
+        found
+    };
+    tools.iter().copied().filter(there).collect()
+}
+
+/// The workspace.
+pub(crate) fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests is a folder of the workspace")
+}
+
+/// Where what is built here goes.
+pub(crate) fn folder() -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capi");
+    fs::create_dir_all(&path).expect("the folder can be created");
+    path
+}
+
+/// The archive as a C program links it. It has a target folder of its own, since cargo holds the other one now.
+fn archive() -> &'static Path {
+    static ARCHIVE: OnceLock<PathBuf> = OnceLock::new();
+    ARCHIVE.get_or_init(|| {
+        let target = folder().join("target");
+        let build = Command::new(env!("CARGO"))
+            .args(["build", "--quiet", "-p", "controller-capi-staticlib", "--profile", "embedded"])
+            .arg("--target-dir")
+            .arg(&target)
+            .current_dir(root())
+            .status();
+        assert!(build.is_ok_and(|status| status.success()), "the archive can be built");
+        target.join("embedded/libctl.a")
+    })
+}
+
+/// How programs are built.
+pub(crate) struct Build<'a> {
+    compiler: Tool,
+    flags: &'a [&'a str],
+}
+
+impl<'a> Build<'a> {
+    pub(crate) fn new(compiler: Tool, flags: &'a [&'a str]) -> Self {
+        Self { compiler, flags }
+    }
+
+    /// The program of `tests/c` for one number type.
+    pub(crate) fn program(&self, name: &str, variant: &str) -> PathBuf {
+        let source = root().join(format!("tests/c/{name}.c"));
+        let defined = format!("-DVARIANT={variant}");
+        self.compile(&source, &format!("{name}-{variant}"), &["-std=c99", &defined])
+    }
+
+    /// A program of one source.
+    pub(crate) fn compile(&self, source: &Path, name: &str, more: &[&str]) -> PathBuf {
+        let marks: String = self.flags.concat().chars().filter(char::is_ascii_alphanumeric).collect();
+        let program = folder().join(format!("{name}-{}-{marks}", self.compiler.command()));
+        let mut command = self.command();
+        command.args(more).arg(source).arg(archive()).arg("-lm").arg("-o").arg(&program);
+        let output = command.output().expect("the compiler starts");
+        assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+        program
+    }
+
+    fn command(&self) -> Command {
+        let mut command = Command::new(self.compiler.command());
+        command.args(["-Wall", "-Wextra", "-pedantic", "-Werror"]).args(self.flags);
+        command.arg("-I").arg(root().join("controller-capi/include")).arg("-I").arg(root().join("tests/c"));
+        command
+    }
+
+    /// Whether a program with these flags can be linked at all.
+    pub(crate) fn links(&self) -> bool {
+        let source = folder().join(format!("empty-{}.c", self.compiler.command()));
+        fs::write(&source, "int main(void) { return 0; }\n").expect("the source can be written");
+        let output = self.command().arg(&source).arg("-o").arg(source.with_extension("out")).output();
+        output.is_ok_and(|o| o.status.success())
+    }
+}
+
+/// The static assertions of the layout hold, and the header has no warning.
+pub(crate) fn checks(compiler: Tool, flags: &[&str]) {
+    let mut command = Build::new(compiler, flags).command();
+    let output = command.arg("-fsyntax-only").arg(root().join("tests/c/layout.c")).output();
+    let output = output.expect("the compiler starts");
+    assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// What a program prints that ends well.
+pub(crate) fn run(program: &Path, runner: &[&str], args: &[PathBuf]) -> String {
+    let mut command = match runner {
+        [first, rest @ ..] => {
+            let mut command = Command::new(first);
+            command.args(rest).arg(program);
+            command
+        }
+        [] => Command::new(program),
+    };
+    let output = command.args(args).output().expect("the program starts");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let shown = text.lines().filter(|line| line.contains(':') || line.contains("failures"));
+    let shown: Vec<&str> = shown.take(20).collect();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {}\n{}\n{errors}", output.status, shown.join("\n"));
+    text
+}
+
+/// The last line of a program that checks says so.
+pub(crate) fn passes(output: &str) {
+    let verdict = output.lines().last().unwrap_or_default();
+    let checks: u32 = verdict.split(' ').next().and_then(|n| n.parse().ok()).unwrap_or(0);
+    assert!(checks > 1000 && verdict.ends_with(", 0 failures"), "{verdict}");
+}
