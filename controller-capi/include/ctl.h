@@ -279,7 +279,7 @@ typedef struct ctl_fault {
 /* All faults of a configuration at once. */
 typedef struct ctl_faults {
     uint32_t count; /* entries of `list` in use */
-    uint32_t total; /* faults found */
+    uint32_t total; /* faults found; on a microcontroller the search keeps no more than 12, and 1 for each choice */
     ctl_fault list[CTL_MAX_FAULTS];
 } ctl_faults;
 

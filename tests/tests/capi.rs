@@ -44,20 +44,49 @@ fn replayed(build: &Build<'_>, runner: &[&str], samples: usize, seeds: std::ops:
             let (paths, expected) =
                 if variant == "f32" { scripts::<f32>(seed, samples) } else { scripts::<f64>(seed, samples) };
             let output = tools::run(&program, runner, &paths);
-            let (outputs, verdict) = output.trim_end().rsplit_once('\n').expect("a verdict at the end");
-            assert!(verdict.ends_with(", 0 failures"), "{verdict}");
-            for (line, (ours, theirs)) in expected.lines().zip(outputs.lines()).enumerate() {
-                assert_eq!(ours, theirs, "{variant}, seed {seed}: output {line}, Rust left, C right");
-            }
-            assert_eq!(expected.lines().count(), outputs.lines().count());
+            same(variant, seed, &expected, &output);
         }
     }
+}
+
+/// The program's outputs are the expected ones.
+fn same(variant: &str, seed: u64, expected: &str, output: &str) {
+    let (outputs, verdict) = output.trim_end().rsplit_once('\n').expect("a verdict at the end");
+    assert!(verdict.ends_with(", 0 failures"), "{verdict}");
+    for (line, (ours, theirs)) in expected.lines().zip(outputs.lines()).enumerate() {
+        assert_eq!(ours, theirs, "{variant}, seed {seed}: output {line}, Rust left, C right");
+    }
+    assert_eq!(expected.lines().count(), outputs.lines().count());
 }
 
 #[test]
 fn outputs_are_those_of_the_core_bit_for_bit() {
     for compiler in available(&[Tool::Gcc, Tool::Clang]) {
         replayed(&Build::new(compiler, &["-O2"]), &[], 5000, 10..14);
+    }
+}
+
+#[test]
+fn outputs_are_those_of_the_core_on_an_emulated_cortex_m() {
+    if available(&[Tool::ArmGcc, Tool::Qemu]).len() < 2 {
+        return;
+    }
+    // The board has a Cortex-M4F, which runs the code of its smaller relatives, too.
+    let boards: [(&str, &[&str]); 3] = [
+        ("thumbv7em-none-eabihf", &["-mcpu=cortex-m4", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]),
+        ("thumbv7em-none-eabi", &["-mcpu=cortex-m4", "-mfloat-abi=soft"]),
+        ("thumbv6m-none-eabi", &["-mcpu=cortex-m0"]),
+    ];
+    for (target, flags) in boards.into_iter().filter(|(target, _)| tools::has_target(target)) {
+        for (variant, seed) in VARIANTS.into_iter().zip([40, 42]) {
+            let image = tools::image("replay", variant, target, flags);
+            let (paths, expected) =
+                if variant == "f32" { scripts::<f32>(seed, 2000) } else { scripts::<f64>(seed, 2000) };
+            same(variant, seed, &expected, &tools::emulated(&image, &paths));
+            for program in ["errors", "snapshot"] {
+                tools::passes(&tools::emulated(&tools::image(program, variant, target, flags), &[]));
+            }
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::Mutex;
 use std::{fs, io::Write};
 
 /// A program that this machine may lack.
@@ -11,6 +11,7 @@ pub(crate) enum Tool {
     Gcc,
     Clang,
     ArmGcc,
+    Qemu,
     Valgrind,
 }
 
@@ -20,6 +21,7 @@ impl Tool {
             Self::Gcc => "gcc",
             Self::Clang => "clang",
             Self::ArmGcc => "arm-none-eabi-gcc",
+            Self::Qemu => "qemu-system-arm",
             Self::Valgrind => "valgrind",
         }
     }
@@ -55,20 +57,37 @@ pub(crate) fn folder() -> PathBuf {
     path
 }
 
-/// The archive as a C program links it. It has a target folder of its own, since cargo holds the other one now.
-fn archive() -> &'static Path {
-    static ARCHIVE: OnceLock<PathBuf> = OnceLock::new();
-    ARCHIVE.get_or_init(|| {
-        let target = folder().join("target");
-        let build = Command::new(env!("CARGO"))
-            .args(["build", "--quiet", "-p", "controller-capi-staticlib", "--profile", "embedded"])
-            .arg("--target-dir")
-            .arg(&target)
-            .current_dir(root())
-            .status();
-        assert!(build.is_ok_and(|status| status.success()), "the archive can be built");
-        target.join("embedded/libctl.a")
-    })
+/// The archive as a C program links it, for this machine or for a target. It has a target folder of its own, since cargo
+/// holds the other one now.
+fn archive(target: Option<&str>) -> PathBuf {
+    static BUILDING: Mutex<()> = Mutex::new(());
+    // One at a time; after a failure the others fail by themselves.
+    let _building = BUILDING.lock();
+    let folder = folder().join("target");
+    let mut command = Command::new(env!("CARGO"));
+    command
+        .args(["build", "--quiet", "-p", "controller-capi-staticlib", "--profile", "embedded"])
+        .arg("--target-dir")
+        .arg(&folder)
+        .current_dir(root());
+    if let Some(target) = target {
+        command.args(["--target", target]);
+    }
+    assert!(command.status().is_ok_and(|status| status.success()), "the archive can be built");
+    folder.join(target.unwrap_or_default()).join("embedded/libctl.a")
+}
+
+/// Whether the compiler in use has the library for a target.
+pub(crate) fn has_target(target: &str) -> bool {
+    let sysroot = Command::new("rustc").args(["--print", "sysroot"]).current_dir(root()).output();
+    let there = sysroot.is_ok_and(|output| {
+        let path = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
+        path.join("lib/rustlib").join(target).is_dir()
+    });
+    if !there {
+        not_run(&format!("C interface for {target}, whose library is missing"));
+    }
+    there
 }
 
 /// How programs are built.
@@ -94,7 +113,7 @@ impl<'a> Build<'a> {
         let marks: String = self.flags.concat().chars().filter(char::is_ascii_alphanumeric).collect();
         let program = folder().join(format!("{name}-{}-{marks}", self.compiler.command()));
         let mut command = self.command();
-        command.args(more).arg(source).arg(archive()).arg("-lm").arg("-o").arg(&program);
+        command.args(more).arg(source).arg(archive(None)).arg("-lm").arg("-o").arg(&program);
         let output = command.output().expect("the compiler starts");
         assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
         program
@@ -116,12 +135,41 @@ impl<'a> Build<'a> {
     }
 }
 
+/// A program of `tests/c` as an image for the emulated reference board.
+pub(crate) fn image(name: &str, variant: &str, target: &str, flags: &[&str]) -> PathBuf {
+    let c = |file: &str| root().join("tests/c").join(file);
+    let program = folder().join(format!("{name}-{variant}-{target}.elf"));
+    let mut command = Build::new(Tool::ArmGcc, flags).command();
+    command
+        .args(["-mthumb", "-std=c99", "-O2", &format!("-DVARIANT={variant}")])
+        .args(["-ffunction-sections", "-Wl,--gc-sections", "-Wl,--no-warn-execstack"])
+        // The C library that asks the debugger for its files: on the emulator those of this machine.
+        .arg("--specs=rdimon.specs")
+        .arg("-T")
+        .arg(c("board/board.ld"))
+        .args([c("board/start.c"), c(&format!("{name}.c")), archive(Some(target))])
+        .arg("-o")
+        .arg(&program);
+    let output = command.output().expect("the compiler starts");
+    assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+    program
+}
+
 /// The static assertions of the layout hold, and the header has no warning.
 pub(crate) fn checks(compiler: Tool, flags: &[&str]) {
     let mut command = Build::new(compiler, flags).command();
     let output = command.arg("-fsyntax-only").arg(root().join("tests/c/layout.c")).output();
     let output = output.expect("the compiler starts");
     assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// What an image prints on the emulated board.
+pub(crate) fn emulated(image: &Path, args: &[PathBuf]) -> String {
+    let words: Vec<String> = args.iter().map(|path| format!(",arg={}", path.display())).collect();
+    let semihosting = format!("enable=on,target=native,arg=image{}", words.concat());
+    let mut runner = vec!["qemu-system-arm", "-M", "mps2-an386", "-display", "none", "-monitor", "none"];
+    runner.extend(["-serial", "none", "-semihosting-config", &semihosting, "-kernel"]);
+    run(image, &runner, &[])
 }
 
 /// What a program prints that ends well.
