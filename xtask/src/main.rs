@@ -15,6 +15,7 @@
 //! | [`report`] | the rung that opens the program's pages in a browser |
 //! | [`memory`] | the memory of long runs |
 //! | [`pil`] | controllers on emulated boards: the same bits, round trips a second |
+//! | [`capi`] | what a C program links: archive, object, symbols, sizes |
 //! | [`mod@bench`] | the speed of the simulation and of the tuning rules, beside Python |
 //! | [`long_runs`] | scenarios of any length for these |
 //! | [`board_demo`] | the demo of the firmware, whose log is committed |
@@ -29,6 +30,7 @@
 mod bench;
 mod board_demo;
 mod browser;
+mod capi;
 mod checks;
 mod emulator;
 mod failing;
@@ -70,10 +72,10 @@ struct Command {
 }
 
 /// All commands in the order of the help.
-const COMMANDS: [Command; 8] = [
+const COMMANDS: [Command; 9] = [
     Command {
         name: "setup",
-        about: "add what the toolchain lacks, the emulator, the browser for the reports",
+        about: "add what the toolchain lacks, the emulator, C compilers, the browser",
         options: &[("--fuzz", "cargo-fuzz as well (needs a C++ compiler)")],
     },
     Command {
@@ -99,6 +101,11 @@ const COMMANDS: [Command; 8] = [
         name: "size",
         about: "instructions, code, RAM, stack on every board; compares the tables",
         options: &[("--update", "write the tables"), ("--markdown", "print the table for people")],
+    },
+    Command {
+        name: "capi",
+        about: "archives and objects for C in target/capi; compares the table of sizes",
+        options: &[("--update", "write the table")],
     },
     Command { name: "docs", about: "build the documentation; warnings are errors", options: &[] },
     Command { name: "fix", about: "format all sources", options: &[] },
@@ -127,6 +134,7 @@ enum Request {
     Soak { minutes: u64 },
     Bench,
     Size(size::Then),
+    Capi(capi::Then),
     Docs,
     Fix,
 }
@@ -159,6 +167,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
         Request::Setup { fuzz } => {
             let mut lacking = setup::toolchain(root)?;
             lacking.extend(emulator::ready(root));
+            lacking.extend(capi::ready(root));
             lacking.extend(browser::ready(root)?.err());
             if fuzz {
                 lacking.extend(setup::fuzzing(root).err());
@@ -177,6 +186,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
         Request::Soak { minutes } => soak(root, minutes),
         Request::Bench => bench::run(root).and(pil::bench(root)),
         Request::Size(then) => size::run(root, then).map(|remark| println!("{remark}")),
+        Request::Capi(then) => capi::run(root, then).map(|remark| println!("{remark}")),
         Request::Docs => rungs::docs(root),
         Request::Fix => Cmd::cargo(root).args(["fmt", "--all"]).run(),
     }
@@ -259,6 +269,11 @@ fn parse(args: &[String]) -> Result<Request, String> {
                 then = if option == "--update" { size::Then::Update } else { size::Then::Markdown };
             }
             Ok(Request::Size(then))
+        }
+        "capi" => {
+            let update = rest.option(&["--update"])?.is_some();
+            while rest.option(&["--update"])?.is_some() {}
+            Ok(Request::Capi(if update { capi::Then::Update } else { capi::Then::Check }))
         }
         "docs" => rest.option(&[]).map(|_| Request::Docs),
         "fix" => rest.option(&[]).map(|_| Request::Fix),
@@ -397,6 +412,8 @@ mod tests {
         assert_eq!(words("soak --minutes=0"), Ok(Request::Soak { minutes: 0 }));
         assert_eq!(words("bench"), Ok(Request::Bench));
         assert_eq!(words("size"), Ok(Request::Size(size::Then::Check)));
+        assert_eq!(words("capi"), Ok(Request::Capi(capi::Then::Check)));
+        assert_eq!(words("capi --update"), Ok(Request::Capi(capi::Then::Update)));
         assert_eq!(words("size --update"), Ok(Request::Size(size::Then::Update)));
         let only = vec!["clippy".to_string(), "demo".to_string()];
         let options = ladder::Options { keep_going: true, only };

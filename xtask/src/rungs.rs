@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::board_demo;
+use crate::capi;
 use crate::checks;
 use crate::emulator::{self, REFERENCE};
 use crate::fuzz;
@@ -18,7 +19,7 @@ use crate::size;
 use crate::swap;
 
 /// All rungs, in order.
-pub(crate) const RUNGS: [Rung; 18] = [
+pub(crate) const RUNGS: [Rung; 19] = [
     Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
     Rung { name: "format", about: "sources are formatted", run: format },
     Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
@@ -39,6 +40,11 @@ pub(crate) const RUNGS: [Rung; 18] = [
         name: "same-bits",
         about: "the same bits at every optimisation level and on every board",
         run: same_bits::rung,
+    },
+    Rung {
+        name: "c-abi",
+        about: "archives and objects for C: only their own symbols, no panic, the sizes of the table; from C the same bits",
+        run: capi::rung,
     },
     Rung { name: "on-target", about: "the tests that run on the microcontroller", run: emulator::on_target },
     Rung { name: "swap", about: "laws replaced under an interrupt: whole, without a bump", run: swap::rung },
