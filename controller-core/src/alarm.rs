@@ -102,6 +102,14 @@ impl<T: Real> Alarms<T> {
         })
     }
 
+    /// Levels hi hi, hi, lo, lo lo, deviation \[y\] (one that cannot be reached where no alarm is configured) and the
+    /// hysteresis; `None` without any alarm.
+    #[must_use]
+    pub fn levels(&self) -> Option<([T; 5], T)> {
+        let levels = [self.hi_hi, self.hi, self.lo, self.lo_lo, self.deviation];
+        self.any.then_some((levels, self.hysteresis))
+    }
+
     /// The active alarms after this sample; `active` is the set after the last one.
     #[must_use]
     #[inline]

@@ -73,6 +73,18 @@ impl<T: Real> AntiWindup<T> {
         })
     }
 
+    /// Share of `a - v` that back-calculation adds; 0 under another rule.
+    #[must_use]
+    pub fn gain(&self) -> T {
+        self.gain
+    }
+
+    /// Whether the rule takes increments back.
+    #[must_use]
+    pub fn is_conditional(&self) -> bool {
+        self.conditional
+    }
+
     /// What to add to the integral term \[u\]: `increment` is what the last sample added, `v` the output it wanted,
     /// `applied` the output that was applied.
     #[must_use]

@@ -76,7 +76,9 @@ pub use compensator::{
     CompensatorInput, CompensatorOutput, CompensatorState, Estimator, EstimatorConfig, FilterNames,
     NoCompensator, Observer, ObserverConfig,
 };
-pub use controller::{Controller, ControllerConfig, ControllerInput, ControllerOutput, ControllerState};
+pub use controller::{
+    Controller, ControllerConfig, ControllerInput, ControllerNumbers, ControllerOutput, ControllerState,
+};
 pub use deadband::Deadband;
 pub use delay::{DelayLine, Memory};
 pub use error::{ConfigError, ConfigErrors, MAX_FAULTS, Param, Reason};

@@ -139,6 +139,12 @@ impl<T: Real> Limit<T> {
         v.clamp_to(self.lo, self.hi)
     }
 
+    /// The longest steps of one sample, down and up \[u\], both above 0.
+    #[must_use]
+    pub fn steps(&self) -> (T, T) {
+        (self.down, self.up)
+    }
+
     /// Lowest output \[u\].
     #[must_use]
     pub fn lo(&self) -> T {

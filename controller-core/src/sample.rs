@@ -220,6 +220,18 @@ impl<T: Real> SampleGuard<T> {
         (self.target, self.step)
     }
 
+    /// Bad samples in a row that are held.
+    #[must_use]
+    pub fn hold_samples(&self) -> u16 {
+        self.hold_samples
+    }
+
+    /// Whether a fallback ends with an acknowledgement only.
+    #[must_use]
+    pub fn is_acknowledged(&self) -> bool {
+        self.acknowledged
+    }
+
     /// The measurement's range \[y\].
     #[must_use]
     pub fn range(&self) -> (T, T) {

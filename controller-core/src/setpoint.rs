@@ -133,6 +133,18 @@ impl<T: Real> Setpoint<T> {
         self.track
     }
 
+    /// The longest steps of one sample, down and up \[y\], both above 0.
+    #[must_use]
+    pub fn steps(&self) -> (T, T) {
+        (self.down, self.up)
+    }
+
+    /// Whether a rate was given.
+    #[must_use]
+    pub fn ramps(&self) -> bool {
+        self.ramps
+    }
+
     /// The range \[y\].
     #[must_use]
     pub fn range(&self) -> (T, T) {

@@ -46,12 +46,15 @@ pub(super) struct ExportArguments {
 enum Language {
     /// A Rust module of constants for controller-core
     Rust,
+    /// A function block in plain Structured Text of IEC 61131-3, for PLCs that link nothing
+    St,
 }
 
 impl From<Language> for Format {
     fn from(language: Language) -> Self {
         match language {
             Language::Rust => Self::Rust,
+            Language::St => Self::StructuredText,
         }
     }
 }
@@ -81,7 +84,7 @@ pub(super) fn run(arguments: &ExportArguments, json: bool) -> Result<(), Failure
     let export = export.map_err(|why| refused(spec, &why))?;
     let origin = job.input.name.as_str();
     let origin = Path::new(origin).file_name().map_or(origin.into(), |name| name.to_string_lossy());
-    let text = export.text(arguments.format.into(), &origin);
+    let text = export.text(arguments.format.into(), &origin).map_err(|why| refused(spec, &why))?;
     if let Some(target) = &target {
         target.write(|file| file.write_all(text.as_bytes())).map_err(Failure::internal)?;
     }
@@ -120,6 +123,8 @@ fn refused(spec: &ControllerSpec, why: &Refused) -> Failure {
     let problem = match why {
         Refused::Cascade => Problem::new("refused", format!("`{name}` is a cascade: two loops, two laws"))
             .help("write each of the two as a controller of its own, then export both"),
+        Refused::Adrc => Problem::new("refused", format!("`{name}` is an ADRC, which only `--format rust` writes"))
+            .help("use `--format rust`, or close the loop by a PID with a disturbance observer"),
         Refused::Faults(faults) => {
             let list: Vec<String> = faults.as_slice().iter().map(ToString::to_string).collect();
             Problem::new("refused", format!("`{name}` cannot run so: {}", list.join("; ")))

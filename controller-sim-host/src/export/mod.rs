@@ -3,8 +3,13 @@
 //! What is exported has passed every check of the law that will run: it is built here, in the number type of the target,
 //! before a line of it is written.
 
+pub mod block;
+mod function_block;
+mod head;
 mod rust;
+pub mod st;
 
+use block::Block;
 use crate::scenario::{ControllerSpec, Scenario};
 use crate::simulate::{AnyLaw, Precision};
 use controller_core::{AnyCompensator, CompensatorConfig, ConfigErrors};
@@ -14,6 +19,19 @@ use controller_core::{AnyCompensator, CompensatorConfig, ConfigErrors};
 pub enum Format {
     /// A Rust module of constants for `controller-core`.
     Rust,
+    /// A function block in Structured Text of IEC 61131-3.
+    StructuredText,
+}
+
+impl Format {
+    /// Its name on the command line and in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rust => "rust",
+            Self::StructuredText => "st",
+        }
+    }
 }
 
 /// What the target's file is made of.
@@ -30,6 +48,8 @@ pub struct Export<'a> {
 pub enum Refused {
     /// Two loops, one inside the other: each is a file of its own.
     Cascade,
+    /// A loop with an ADRC: this format has none.
+    Adrc,
     /// The target's number type cannot hold the law, or the delay memory is too small.
     Faults(Box<ConfigErrors>),
 }
@@ -65,11 +85,23 @@ impl<'a> Export<'a> {
     }
 
     /// The file; `origin` is the file it comes from, for its head.
-    #[must_use]
-    pub fn text(&self, format: Format, origin: &str) -> String {
-        match format {
+    ///
+    /// # Errors
+    /// A loop that `format` has no words for.
+    pub fn text(&self, format: Format, origin: &str) -> Result<String, Refused> {
+        Ok(match format {
             Format::Rust => rust::text(self, origin),
-        }
+            Format::StructuredText => st::function_block(&self.block(origin)?, self.precision),
+        })
+    }
+
+    /// The loop as a function block, before it is printed in a language; `origin` as in [`text`](Self::text).
+    ///
+    /// # Errors
+    /// A loop with an ADRC.
+    pub fn block(&self, origin: &str) -> Result<Block, Refused> {
+        let (name, head) = (head::name(self.name()), head::lines(self, origin));
+        function_block::block(self, &name, head).ok_or(Refused::Adrc)
     }
 
     /// The controller's name.

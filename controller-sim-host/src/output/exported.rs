@@ -23,9 +23,7 @@ pub fn exported_json(export: &Export<'_>, format: Format, text: &str, saved: Opt
     json(&Exported {
         version: env!("CARGO_PKG_VERSION"),
         controller: export.name(),
-        format: match format {
-            Format::Rust => "rust",
-        },
+        format: format.name(),
         precision: precision_name(export.precision()),
         ts: export.ts(),
         capacity: export.capacity(),

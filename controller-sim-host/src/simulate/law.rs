@@ -3,7 +3,8 @@
 use crate::scenario::{CompensatorSpec, ControllerSpec};
 use controller_core::{
     Adrc, AdrcState, AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigError, ConfigErrors,
-    Controller, ControllerInput, ControllerOutput, ControllerState, Mode, NoCompensator, Param, Real, Reason,
+    Controller, ControllerInput, ControllerNumbers, ControllerOutput, ControllerState, Mode, NoCompensator,
+    Param, PidCoefficients, Real, Reason,
 };
 
 type Compensated<T> = AnyCompensator<T, Vec<T>>;
@@ -133,6 +134,32 @@ impl<T: Real> AnyLaw<T> {
             Block::Plain { law, state } => law.advance(state, n),
             Block::Adrc { law, state } => law.advance(state, n),
             Block::Compensated { law, state } => law.advance(state, n),
+        }
+    }
+
+    /// The numbers of the loop, for an export.
+    pub(crate) fn numbers(&self) -> ControllerNumbers<T> {
+        match &self.block {
+            Block::Plain { law, .. } => law.numbers(),
+            Block::Adrc { law, .. } => law.numbers(),
+            Block::Compensated { law, .. } => law.numbers(),
+        }
+    }
+
+    /// The coefficients of the PID; `None` for an ADRC.
+    pub(crate) fn pid(&self) -> Option<PidCoefficients<T>> {
+        match &self.block {
+            Block::Plain { law, .. } => Some(law.pid().coefficients()),
+            Block::Adrc { .. } => None,
+            Block::Compensated { law, .. } => Some(law.pid().coefficients()),
+        }
+    }
+
+    /// The compensator, if there is one.
+    pub(crate) fn compensator(&self) -> Option<&Compensated<T>> {
+        match &self.block {
+            Block::Plain { .. } | Block::Adrc { .. } => None,
+            Block::Compensated { law, .. } => Some(law.compensator()),
         }
     }
 

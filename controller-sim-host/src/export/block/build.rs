@@ -1,0 +1,183 @@
+//! Puts a block together: sums and products of any depth become assignments of one operation each.
+
+use super::{Block, Expression, Initial, Operator, Place, Role, Statement, Type, Variable, x};
+use std::collections::HashMap;
+
+/// A block under construction.
+#[derive(Debug, Default)]
+pub struct Builder {
+    variables: Vec<Variable>,
+    kinds: HashMap<String, Type>,
+    /// Statements of the part that is being written, the outer ones before it.
+    open: Vec<Vec<Statement>>,
+    /// Scratch variables in use by the assignment being written, and the most that were ever: of `Real`, of `Long`.
+    scratch: [usize; 2],
+    most: [usize; 2],
+}
+
+impl Builder {
+    /// An empty block.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { open: vec![Vec::new()], ..Self::default() }
+    }
+
+    /// Declares a variable.
+    pub fn declare(&mut self, role: Role, kind: Type, name: &str, initial: Initial, comment: &str) {
+        self.declare_array(role, kind, name, None, initial, comment);
+    }
+
+    /// Declares an array, or a variable without `cells`.
+    pub fn declare_array(
+        &mut self,
+        role: Role,
+        kind: Type,
+        name: &str,
+        cells: Option<usize>,
+        initial: Initial,
+        comment: &str,
+    ) {
+        self.kinds.insert(name.to_owned(), kind);
+        self.variables.push(Variable {
+            name: name.to_owned(),
+            kind,
+            cells,
+            role,
+            initial,
+            comment: comment.to_owned(),
+        });
+    }
+
+    /// Words for the reader.
+    pub fn note(&mut self, words: &str) {
+        self.push(Statement::Comment(words.to_owned()));
+    }
+
+    /// `name := value`.
+    pub fn set(&mut self, name: &str, value: Expression) {
+        self.assign(Place::Variable(name.to_owned()), value);
+    }
+
+    /// `array[index] := value`.
+    pub fn set_cell(&mut self, array: &str, index: &str, value: Expression) {
+        self.assign(Place::Cell(array.to_owned(), index.to_owned()), value);
+    }
+
+    fn assign(&mut self, place: Place, value: Expression) {
+        self.scratch = [0, 0];
+        let value = self.flat(value);
+        self.push(Statement::Assign(place, value));
+    }
+
+    /// The statements of `body` when `condition` is true.
+    pub fn when(&mut self, condition: Expression, body: impl FnOnce(&mut Self)) {
+        self.either(condition, body, |_| {});
+    }
+
+    /// The statements of one or the other.
+    pub fn either(
+        &mut self,
+        condition: Expression,
+        yes: impl FnOnce(&mut Self),
+        no: impl FnOnce(&mut Self),
+    ) {
+        let yes = self.part(yes);
+        let mut no = self.part(no);
+        let mut branches = vec![(condition, yes)];
+        // A lone question in the last part goes on in the same row of questions.
+        if let [Statement::If(more, last)] = &mut *no {
+            branches.append(more);
+            no = std::mem::take(last);
+        }
+        self.push(Statement::If(branches, no));
+    }
+
+    /// The statements of `body` for every value of `counter`, both ends included.
+    pub fn repeat(&mut self, counter: &str, first: i32, last: i32, body: impl FnOnce(&mut Self)) {
+        let body = self.part(body);
+        self.push(Statement::Repeat { counter: counter.to_owned(), first, last, body });
+    }
+
+    /// The block.
+    #[must_use]
+    pub fn finish(mut self, name: &str, head: Vec<String>) -> Block {
+        for (kind, most) in [(Type::Real, self.most[0]), (Type::Long, self.most[1])] {
+            for n in 1..=most {
+                self.declare(
+                    Role::Scratch,
+                    kind,
+                    &scratch(kind, n),
+                    Initial::Zero,
+                    "result of one operation",
+                );
+            }
+        }
+        let body = self.open.pop().unwrap_or_default();
+        Block { name: name.to_owned(), head, variables: self.variables, body }
+    }
+
+    fn part(&mut self, body: impl FnOnce(&mut Self)) -> Vec<Statement> {
+        self.open.push(Vec::new());
+        body(self);
+        self.open.pop().unwrap_or_default()
+    }
+
+    fn push(&mut self, statement: Statement) {
+        if let Some(part) = self.open.last_mut() {
+            part.push(statement);
+        }
+    }
+
+    /// The type of a number; `Real` where there is none to find.
+    fn kind(&self, value: &Expression) -> Type {
+        match value {
+            Expression::Variable(name) | Expression::Cell(name, _) => {
+                self.kinds.get(name).copied().unwrap_or(Type::Real)
+            }
+            Expression::Count(_) => Type::Count,
+            Expression::Flag(_) | Expression::Not(_) => Type::Flag,
+            Expression::Operation(operator, ..) if operator.is_comparison() => Type::Flag,
+            Expression::Operation(_, a, _) | Expression::Negative(a) => self.kind(a),
+            Expression::Convert(kind, _) => *kind,
+        }
+    }
+
+    /// `value` with one operation at most, those below it assigned before.
+    fn flat(&mut self, value: Expression) -> Expression {
+        match value {
+            Expression::Operation(operator, a, b) if operator.is_arithmetic() => {
+                let (a, b) = (self.leaf(*a), self.leaf(*b));
+                Expression::Operation(operator, Box::new(a), Box::new(b))
+            }
+            Expression::Negative(a) => {
+                let minus_one = if self.kind(&a) == Type::Long { "L_MINUS_ONE" } else { "MINUS_ONE" };
+                let a = self.leaf(*a);
+                Expression::Operation(Operator::Multiply, Box::new(x(minus_one)), Box::new(a))
+            }
+            Expression::Convert(kind, a) => Expression::Convert(kind, Box::new(self.leaf(*a))),
+            other => other,
+        }
+    }
+
+    /// `value` without any operation.
+    fn leaf(&mut self, value: Expression) -> Expression {
+        match value {
+            Expression::Operation(..) | Expression::Negative(_) | Expression::Convert(..) => {
+                let kind = self.kind(&value);
+                let value = self.flat(value);
+                let at = usize::from(kind == Type::Long);
+                self.scratch[at] += 1;
+                self.most[at] = self.most[at].max(self.scratch[at]);
+                let name = scratch(kind, self.scratch[at]);
+                self.push(Statement::Assign(Place::Variable(name.clone()), value));
+                Expression::Variable(name)
+            }
+            other => other,
+        }
+    }
+}
+
+/// Name of the n-th scratch variable.
+fn scratch(kind: Type, n: usize) -> String {
+    if kind == Type::Long { format!("L_TMP{n}") } else { format!("TMP{n}") }
+}

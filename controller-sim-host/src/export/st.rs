@@ -1,0 +1,211 @@
+//! A function block as Structured Text of IEC 61131-3.
+
+use super::block::{Block, Expression, Initial, Operator, Place, Role, Statement, Type, Variable};
+use crate::simulate::Precision;
+use std::fmt::Write;
+
+/// The file of a function block whose numbers are of the type `precision`.
+#[must_use]
+pub fn function_block(block: &Block, precision: Precision) -> String {
+    pou(block, precision, "FUNCTION_BLOCK")
+}
+
+/// The same statements as a program.
+pub(super) fn program(block: &Block, precision: Precision) -> String {
+    pou(block, precision, "PROGRAM")
+}
+
+fn pou(block: &Block, precision: Precision, keyword: &str) -> String {
+    let mut text = Text { out: String::new(), precision };
+    text.line(0, &format!("{keyword} {}", block.name));
+    for line in &block.head {
+        text.line(0, &format!("(* {line} *)"));
+    }
+    text.section(block, "VAR_INPUT", &[Role::Input]);
+    text.section(block, "VAR_OUTPUT", &[Role::Output]);
+    text.section(block, "VAR CONSTANT", &[Role::Named]);
+    text.section(block, "VAR", &[Role::Constant, Role::Coefficient, Role::State, Role::Scratch]);
+    text.line(0, "");
+    text.all(&block.body, 0);
+    text.line(0, &format!("END_{keyword}"));
+    text.out
+}
+
+/// The keyword of a type.
+fn keyword(kind: Type, precision: Precision) -> &'static str {
+    match kind {
+        Type::Flag => "BOOL",
+        Type::Count => "DINT",
+        Type::Word => "DWORD",
+        Type::Long => "LREAL",
+        Type::Real => match precision {
+            Precision::F32 => "REAL",
+            Precision::F64 => "LREAL",
+        },
+    }
+}
+
+/// The exact decimals: read as double precision, and then rounded to the type, they are `value` again.
+fn decimal(value: f64) -> String {
+    let text = format!("{value:?}");
+    match text.split_once('e') {
+        None => text,
+        Some((digits, exponent)) if digits.contains('.') => format!("{digits}E{exponent}"),
+        Some((digits, exponent)) => format!("{digits}.0E{exponent}"),
+    }
+}
+
+struct Text {
+    out: String,
+    precision: Precision,
+}
+
+impl Text {
+    fn line(&mut self, depth: usize, words: &str) {
+        if words.is_empty() {
+            self.out.push('\n');
+        } else {
+            let _ = writeln!(self.out, "{:1$}{words}", "", 4 * depth);
+        }
+    }
+
+    fn section(&mut self, block: &Block, opening: &str, roles: &[Role]) {
+        let list: Vec<&Variable> = block.variables.iter().filter(|v| roles.contains(&v.role)).collect();
+        if list.is_empty() {
+            return;
+        }
+        self.line(0, opening);
+        let mut last = None;
+        for variable in list {
+            let about = match variable.role {
+                Role::Constant => "numbers that never change: variables, so that no translator makes literals of them",
+                Role::Coefficient => "coefficients of the PID",
+                Role::State => "state",
+                Role::Scratch => "scratch of one sample",
+                Role::Input | Role::Output | Role::Named => "",
+            };
+            if last != Some(variable.role) && !about.is_empty() {
+                self.line(1, &format!("(* {about} *)"));
+            }
+            last = Some(variable.role);
+            self.variable(variable);
+        }
+        self.line(0, "END_VAR");
+    }
+
+    fn variable(&mut self, variable: &Variable) {
+        let kind = keyword(variable.kind, self.precision);
+        let kind = match variable.cells {
+            Some(cells) => format!("ARRAY [0..{}] OF {kind}", cells.saturating_sub(1)),
+            None => kind.to_owned(),
+        };
+        let list = |of: Vec<String>| {
+            let rows: Vec<String> = of.chunks(8).map(|row| row.join(", ")).collect();
+            format!(" := [{}]", rows.join(",\n        "))
+        };
+        let initial = match &variable.initial {
+            Initial::Zero => String::new(),
+            Initial::Number(value) => format!(" := {}", decimal(*value)),
+            Initial::Count(n) => format!(" := {n}"),
+            Initial::Word(bits) => format!(" := 16#{bits:08X}"),
+            Initial::Flag(is) => format!(" := {}", truth(*is)),
+            Initial::Numbers(values) => list(values.iter().map(|value| decimal(*value)).collect()),
+            Initial::Counts(values) => list(values.iter().map(ToString::to_string).collect()),
+            Initial::Words(values) => list(values.iter().map(|bits| format!("16#{bits:08X}")).collect()),
+        };
+        let comment = if variable.comment.is_empty() {
+            String::new()
+        } else {
+            format!(" (* {} *)", variable.comment)
+        };
+        self.line(1, &format!("{} : {kind}{initial};{comment}", variable.name));
+    }
+
+    fn all(&mut self, statements: &[Statement], depth: usize) {
+        for statement in statements {
+            self.statement(statement, depth);
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement, depth: usize) {
+        match statement {
+            Statement::Comment(words) => self.line(depth, &format!("(* {words} *)")),
+            Statement::Assign(place, value) => {
+                let place = match place {
+                    Place::Variable(name) => name.clone(),
+                    Place::Cell(array, index) => format!("{array}[{index}]"),
+                };
+                let value = self.expression(value, false);
+                self.line(depth, &format!("{place} := {value};"));
+            }
+            Statement::If(branches, last) => {
+                for (n, (condition, body)) in branches.iter().enumerate() {
+                    let word = if n == 0 { "IF" } else { "ELSIF" };
+                    let condition = self.expression(condition, false);
+                    self.line(depth, &format!("{word} {condition} THEN"));
+                    self.body(body, depth);
+                }
+                if !last.is_empty() {
+                    self.line(depth, "ELSE");
+                    self.body(last, depth);
+                }
+                self.line(depth, "END_IF;");
+            }
+            Statement::Repeat { counter, first, last, body } => {
+                self.line(depth, &format!("FOR {counter} := {first} TO {last} DO"));
+                self.body(body, depth);
+                self.line(depth, "END_FOR;");
+            }
+        }
+    }
+
+    /// The statements of a branch; the language allows none without a statement.
+    fn body(&mut self, body: &[Statement], depth: usize) {
+        self.all(body, depth + 1);
+        if body.iter().all(|statement| matches!(statement, Statement::Comment(_))) {
+            self.line(depth + 1, ";");
+        }
+    }
+
+    /// An expression, in parentheses if it is an operand.
+    fn expression(&self, value: &Expression, operand: bool) -> String {
+        match value {
+            Expression::Variable(name) => name.clone(),
+            Expression::Cell(array, index) => format!("{array}[{index}]"),
+            Expression::Count(n) => n.to_string(),
+            Expression::Flag(is) => truth(*is).to_owned(),
+            Expression::Operation(operator, a, b) => {
+                let sign = match operator {
+                    Operator::Add => "+",
+                    Operator::Subtract => "-",
+                    Operator::Multiply => "*",
+                    Operator::Divide => "/",
+                    Operator::Below => "<",
+                    Operator::AtMost => "<=",
+                    Operator::Above => ">",
+                    Operator::AtLeast => ">=",
+                    Operator::Is => "=",
+                    Operator::And => "AND",
+                    Operator::Or => "OR",
+                };
+                let text = format!("{} {sign} {}", self.expression(a, true), self.expression(b, true));
+                if operand { format!("({text})") } else { text }
+            }
+            Expression::Not(a) => format!("NOT ({})", self.expression(a, false)),
+            // A block that is printed has none: its builder makes products of them.
+            Expression::Negative(a) => format!("-({})", self.expression(a, false)),
+            Expression::Convert(kind, a) => {
+                let a = self.expression(a, false);
+                match (self.precision, kind) {
+                    (Precision::F32, Type::Long) => format!("REAL_TO_LREAL({a})"),
+                    (Precision::F32, _) => format!("LREAL_TO_REAL({a})"),
+                    (Precision::F64, _) => a,
+                }
+            }
+        }
+    }
+}
+
+fn truth(is: bool) -> &'static str {
+    if is { "TRUE" } else { "FALSE" }
+}

@@ -1,0 +1,15 @@
+//! Exported function blocks: their statements, printed as C by a generator of these tests, step with the bits of the core;
+//! the text is what independent front ends of Structured Text accept; what it prints is what is meant.
+//!
+//! To renew the committed block: `RENEW_EXPORTS=1 cargo test -p controller-tests --test export_st`.
+
+#[path = "export_st/bits.rs"]
+mod bits;
+#[path = "export_st/compiled.rs"]
+mod compiled;
+#[path = "export_st/drive.rs"]
+mod drive;
+#[path = "export_st/loops.rs"]
+mod loops;
+#[path = "export_st/print_c.rs"]
+mod print_c;
