@@ -146,7 +146,7 @@ impl<T: Real> Driven<T> {
         }
         let refused = self.take(&next);
         let out = self.law.step(&next.input);
-        self.plant += 0.01 * (out.u.to_f64() - self.plant) * self.gain();
+        self.plant += 0.01 * (self.gain() * out.u.to_f64() - self.plant);
         self.modes[out.mode as usize] += 1;
         self.status |= out.status.bits();
         self.before = next;
@@ -164,7 +164,7 @@ impl<T: Real> Driven<T> {
         let chance = &mut self.chance;
         let mut next = self.before;
         let i = &mut next.input;
-        i.y = T::from_f64(self.gain_of_plant() + 1e-3 * chance.noise());
+        i.y = T::from_f64(self.plant + 1e-3 * chance.noise());
         if chance.one_in(40) {
             i.y = T::from_f64(chance.pick(&ODD));
         }
@@ -215,10 +215,6 @@ impl<T: Real> Driven<T> {
         next
     }
 
-    fn gain_of_plant(&self) -> f64 {
-        self.plant
-    }
-
     /// Sometimes other parameters, sometimes such that cannot be used.
     fn tune(&mut self, next: &mut Sample<T>) {
         let Some(taken) = self.taken else { return };
@@ -251,12 +247,10 @@ impl<T: Real> Driven<T> {
             || integral && !(tn.is_finite() && tn > 0.0)
             || !(tv.is_finite() && tv >= 0.0)
             || !tf.is_finite();
-        let values = |list: [T; 4]| list.map(T::to_words);
         let same = next.tuning == taken || !integral && [0, 2, 3].iter().all(|&n| next.tuning[n] == taken[n]);
         if !refused && same {
             return false;
         }
-        let _ = values;
         let new = PidConfig::from_standard(kp, if integral { tn } else { f64::INFINITY }, tv, tf);
         let old = self.spec.config.pid;
         let pid = PidConfig { kp: new.kp, ki: new.ki, kd: new.kd, tf: new.tf, ..old };

@@ -63,7 +63,9 @@ fn declare(out: &mut String, v: &Variable) {
     };
     let cells = v.cells.map_or(String::new(), |cells| format!("[{cells}]"));
     let initial = if v.cells.is_none() && initial == "{0}" { "0".to_owned() } else { initial };
-    let _ = writeln!(out, "static {kind} {name}{cells} = {initial};");
+    // Every variable must be used, but for the names, which are the same in every block.
+    let scope = if v.role == Role::Named { "" } else { "static " };
+    let _ = writeln!(out, "{scope}{kind} {name}{cells} = {initial};");
 }
 
 fn all(out: &mut String, statements: &[Statement]) {

@@ -1,7 +1,7 @@
 //! Puts a block together: sums and products of any depth become assignments of one operation each.
 
 use super::{Block, Expression, Initial, Operator, Place, Role, Statement, Type, Variable, x};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A block under construction.
 #[derive(Debug, Default)]
@@ -98,7 +98,7 @@ impl Builder {
         self.push(Statement::Repeat { counter: counter.to_owned(), first, last, body });
     }
 
-    /// The block.
+    /// The block, without the constants and the scratch variables that nothing uses.
     #[must_use]
     pub fn finish(mut self, name: &str, head: Vec<String>) -> Block {
         for (kind, most) in [(Type::Real, self.most[0]), (Type::Long, self.most[1])] {
@@ -113,6 +113,11 @@ impl Builder {
             }
         }
         let body = self.open.pop().unwrap_or_default();
+        let mut used = HashSet::new();
+        names(&body, &mut used);
+        self.variables.retain(|variable| {
+            !matches!(variable.role, Role::Constant | Role::Scratch) || used.contains(&variable.name)
+        });
         Block { name: name.to_owned(), head, variables: self.variables, body }
     }
 
@@ -180,4 +185,46 @@ impl Builder {
 /// Name of the n-th scratch variable.
 fn scratch(kind: Type, n: usize) -> String {
     if kind == Type::Long { format!("L_TMP{n}") } else { format!("TMP{n}") }
+}
+
+/// The variables that statements name.
+fn names(statements: &[Statement], used: &mut HashSet<String>) {
+    for statement in statements {
+        match statement {
+            Statement::Comment(_) => {}
+            Statement::Assign(place, value) => {
+                match place {
+                    Place::Variable(name) => used.insert(name.clone()),
+                    Place::Cell(array, index) => used.insert(array.clone()) | used.insert(index.clone()),
+                };
+                names_of(value, used);
+            }
+            Statement::If(branches, last) => {
+                for (condition, body) in branches {
+                    names_of(condition, used);
+                    names(body, used);
+                }
+                names(last, used);
+            }
+            Statement::Repeat { counter, body, .. } => {
+                used.insert(counter.clone());
+                names(body, used);
+            }
+        }
+    }
+}
+
+fn names_of(value: &Expression, used: &mut HashSet<String>) {
+    match value {
+        Expression::Variable(name) => {
+            used.insert(name.clone());
+        }
+        Expression::Cell(array, index) => used.extend([array.clone(), index.clone()]),
+        Expression::Count(_) | Expression::Flag(_) => {}
+        Expression::Operation(_, a, b) => {
+            names_of(a, used);
+            names_of(b, used);
+        }
+        Expression::Not(a) | Expression::Negative(a) | Expression::Convert(_, a) => names_of(a, used),
+    }
 }
