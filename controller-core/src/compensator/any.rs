@@ -191,6 +191,17 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
 impl<T, M> AnyCompensatorState<T, M> {
     /// Puts `memory` in the place of the delay memory; gives what was there. For borrowed memory that moves between two
     /// samples: the cells must be the same, in the same order.
+    ///
+    /// ```
+    /// use controller_core::{AnyCompensator, Compensate, ObserverConfig, plant_model::PlantModel};
+    /// let config = ObserverConfig { model: PlantModel::first_order(1.0, 10.0, 2.0), alpha: 1.0, order: None };
+    /// let law = AnyCompensator::<f64, Vec<f64>>::new(&config.to_compensator(0.0), 0.1, 64).unwrap();
+    /// let mut state = law.state(vec![0.0; 64]).unwrap();
+    /// let cells = state.replace_memory(Vec::new());
+    /// let moved = cells.clone();
+    /// state.replace_memory(moved);
+    /// assert_eq!(law.sample(&mut state, 0.0, 0.0).u_f, 0.0);
+    /// ```
     pub fn replace_memory(&mut self, memory: M) -> M
     where
         T: Real,

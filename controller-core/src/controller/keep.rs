@@ -60,6 +60,20 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// Takes `state` over from the loop `old` with another compensator, or with one in the place of none: as
     /// [`adopt`](Self::adopt), but what the old compensator knew is lost. The new one, whose state is `compensator`, settles
     /// at the last measurement and output; the last output of the old one goes into the integral term.
+    ///
+    /// ```
+    /// use controller_core::{Controller, ControllerConfig, ControllerInput, Estimator, EstimatorConfig, PidConfig};
+    /// let config = ControllerConfig { pid: PidConfig { kp: 1.0, ki: 0.5, ..PidConfig::default() }, ..ControllerConfig::default() };
+    /// let model = EstimatorConfig { gain: 1.0, a1: 1.2, a2: 0.2, dead_time: 0.2, kfd: 0.69, tfd: 0.06 };
+    /// let estimator = Estimator::<f64, 32>::estimator(&model, 0.0, 0.01).unwrap();
+    /// let with = Controller::with_compensator(&config, estimator, 0.01).unwrap();
+    /// let without = Controller::<f64>::new(&config, 0.01).unwrap();
+    /// let mut state = with.zeroed();
+    /// with.settle(&mut state, 1.0, 1.0, 3.0);
+    /// let mut state = without.adopt_from(&with, state, ());
+    /// let out = without.step(&mut state, &ControllerInput { r: 1.0, y: 1.0, ..ControllerInput::default() });
+    /// assert_eq!(out.u, 3.0);
+    /// ```
     pub fn adopt_from<D: Compensate<T>>(
         &self,
         old: &Controller<T, D, L>,
@@ -241,5 +255,73 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         })?;
         *state = fresh;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::compensator::{AnyCompensator, CompensatorConfig, EstimatorConfig};
+    use crate::controller::{ControllerConfig, ControllerInput};
+    use crate::pid::PidConfig;
+
+    const TS: f64 = 0.01;
+    const CELLS: usize = 32;
+    const KI: f64 = 0.5;
+
+    type Estimated = AnyCompensator<f64, [f64; CELLS]>;
+
+    fn config() -> ControllerConfig {
+        // Without a filter the terms follow the inputs at once: a sample with the inputs of the last one moves the
+        // integral term only.
+        ControllerConfig {
+            pid: PidConfig { kp: 1.2, ki: KI, ..PidConfig::default() },
+            ..ControllerConfig::default()
+        }
+    }
+
+    fn estimated() -> Controller<f64, Estimated> {
+        let model = EstimatorConfig { gain: 1.0, a1: 1.2, a2: 0.2, dead_time: 0.2, kfd: 0.69, tfd: 0.06 };
+        let compensator: CompensatorConfig = model.to_compensator(0.0);
+        let law = Estimated::new(&compensator, TS, CELLS).unwrap();
+        Controller::with_compensator(&config(), law, TS).unwrap()
+    }
+
+    /// A loop in the middle of a transient, and the output and the input of its last sample.
+    fn at_work<C: Compensate<f64>>(
+        law: &Controller<f64, C>,
+        state: &mut ControllerState<f64, C::State>,
+    ) -> (f64, f64, ControllerInput<f64>) {
+        let mut input = ControllerInput { r: 1.0, ..ControllerInput::default() };
+        let mut last = law.step(state, &input);
+        for _ in 0..80 {
+            // A plant that the model does not know: a disturbance of 0.7.
+            input.y += TS * (last.u + 0.7 - input.y);
+            last = law.step(state, &input);
+        }
+        (last.u, last.u_f, input)
+    }
+
+    #[test]
+    fn a_compensator_comes_and_goes_without_a_bump() {
+        let (with, without) = (estimated(), Controller::<f64>::new(&config(), TS).unwrap());
+        let fresh = || with.compensator.state([0.0; CELLS]).unwrap();
+
+        let mut state = ControllerState::over(fresh());
+        let (u, u_f, input) = at_work(&with, &mut state);
+        assert!(u_f.abs() > 0.1, "{u_f}");
+        let mut state = without.adopt_from(&with, state, ());
+        let next = without.step(&mut state, &input).u;
+        // What is left is the sample's own increment.
+        let increment = KI * TS * (input.r - input.y);
+        assert!((next - u - increment).abs() < 1e-12, "{next} after {u}");
+
+        let mut state = without.zeroed();
+        let (u, _, input) = at_work(&without, &mut state);
+        let mut state = with.adopt_from(&without, state, fresh());
+        let out = with.step(&mut state, &input);
+        let increment = KI * TS * (input.r - input.y);
+        assert!((out.u - u - increment).abs() < 1e-12 && out.u_f.abs() < 1e-12, "{out:?} after {u}");
     }
 }
