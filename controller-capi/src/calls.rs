@@ -6,7 +6,8 @@ use crate::config::{Config, STRUCT_SIZE};
 use crate::fault::{Error, Fault, Faults, number};
 use crate::io::{Input, Output, mode};
 use controller_core::{
-    Compensate, Controller, ControllerState, Mode, NoCompensator, Param, Real, Reason, Status,
+    Compensate, Controller, ControllerConfig, ControllerState, Mode, NoCompensator, Param, Real, Reason,
+    Status,
 };
 use core::ffi::c_void;
 
@@ -37,40 +38,81 @@ unsafe fn report(to: *mut Faults, faults: &Faults) -> Done {
 ///
 /// # Safety
 /// `config` is null or points to a structure that begins with its size.
-unsafe fn read_config(config: *const Config) -> Result<Config, Error> {
+unsafe fn read_config<'a>(config: *const Config) -> Result<&'a Config, Error> {
     check_pointer(config, align_of::<Config>())?;
     // SAFETY: not null, aligned; whatever the size is, it stands at the beginning.
     if unsafe { config.cast::<u32>().read() } != STRUCT_SIZE {
         return Err(Error::StructSize);
     }
-    // SAFETY: a structure of this size; any bits are numbers.
-    Ok(unsafe { config.read() })
+    // SAFETY: a structure of this size; any bits are numbers. Nobody writes it during the call.
+    Ok(unsafe { &*config })
 }
 
 /// A law that is built but has no state yet.
 type NewLaw<T> = Either<Controller<T, NoCompensator>, Controller<T, Delayed<T>>>;
 
 /// Builds the law for `config`, and says how many cells of delay memory it needs; or finds all faults.
+///
+/// Its parts are functions of their own: lists of faults and laws are large, and a small target has the stack for one at
+/// a time.
 #[inline(never)]
 fn build<T: Number>(config: &Config, faults: &mut Faults) -> Option<(NewLaw<T>, u32)> {
     let ts = T::from_f64(config.ts).to_f64();
-    let controller = config.controller(faults).rounded::<T>();
-    let compensator = config.compensator(faults);
-    let Some(compensator) = compensator else {
-        let law = found(Controller::new(&controller, ts), faults)?;
-        return faults.is_empty().then_some((Either::Plain(law), 0));
+    let controller = controller_config::<T>(config, faults);
+    match compensator_law::<T>(config, ts, faults) {
+        None => {
+            // All faults at once, those of the other parts, too.
+            let _ = plain_law::<T>(&controller, ts, faults);
+            None
+        }
+        Some(None) => plain_law(&controller, ts, faults).map(|law| (Either::Plain(law), 0)),
+        Some(Some((law, cells))) => {
+            let law = compensated_law(&controller, law, ts, faults)?;
+            Some((Either::Compensated(law), cells))
+        }
+    }
+}
+
+#[inline(never)]
+fn controller_config<T: Number>(config: &Config, faults: &mut Faults) -> ControllerConfig {
+    config.controller(faults).rounded::<T>()
+}
+
+/// The compensator, if there is one, and the cells it needs; nothing when something is wrong with it.
+#[inline(never)]
+fn compensator_law<T: Number>(
+    config: &Config,
+    ts: f64,
+    faults: &mut Faults,
+) -> Option<Option<(Delayed<T>, u32)>> {
+    let Some(compensator) = config.compensator(faults) else {
+        return Some(None);
     };
     let compensator = compensator.rounded::<T>();
+    let law = found(Delayed::new(&compensator, ts, MAX_DELAY as usize + 1), faults)?;
     let cells = Delayed::<T>::needed_capacity(&compensator, ts);
-    let most = MAX_DELAY as usize + 1;
-    let Some(built) = found(Delayed::new(&compensator, ts, most), faults) else {
-        // All faults at once, those of the other parts, too.
-        let _ = found(Controller::<T>::new(&controller, ts), faults);
-        return None;
-    };
-    let law = found(Controller::with_compensator(&controller, built, ts), faults)?;
-    let cells = u32::try_from(cells).unwrap_or(u32::MAX);
-    faults.is_empty().then_some((Either::Compensated(law), cells))
+    Some(Some((law, u32::try_from(cells).unwrap_or(u32::MAX))))
+}
+
+#[inline(never)]
+fn plain_law<T: Number>(
+    config: &ControllerConfig,
+    ts: f64,
+    faults: &mut Faults,
+) -> Option<Controller<T, NoCompensator>> {
+    let law = found(Controller::new(config, ts), faults);
+    law.filter(|_| faults.is_empty())
+}
+
+#[inline(never)]
+fn compensated_law<T: Number>(
+    config: &ControllerConfig,
+    compensator: Delayed<T>,
+    ts: f64,
+    faults: &mut Faults,
+) -> Option<Controller<T, Delayed<T>>> {
+    let law = found(Controller::with_compensator(config, compensator, ts), faults);
+    law.filter(|_| faults.is_empty())
 }
 
 fn found<V>(built: Result<V, controller_core::ConfigErrors>, faults: &mut Faults) -> Option<V> {
@@ -89,7 +131,7 @@ unsafe fn build_for<T: Number>(
     let mut faults = Faults::default();
     // SAFETY: by the caller.
     let config = unsafe { read_config(config) }?;
-    let built = build::<T>(&config, &mut faults);
+    let built = build::<T>(config, &mut faults);
     let fitting = match built {
         None => Err(Error::Config),
         Some((Either::Plain(law), _)) => {
@@ -124,7 +166,7 @@ pub(crate) unsafe fn delay_samples<T: Number>(config: *const Config, samples: *m
     check_pointer(samples, align_of::<u32>())?;
     // SAFETY: by the caller.
     let config = unsafe { read_config(config) }?;
-    let (_, cells) = build::<T>(&config, &mut Faults::default()).ok_or(Error::Config)?;
+    let (_, cells) = build::<T>(config, &mut Faults::default()).ok_or(Error::Config)?;
     // SAFETY: not null, aligned, the caller's.
     unsafe { samples.write(cells.saturating_sub(1)) };
     Ok(())
@@ -290,29 +332,43 @@ pub(crate) unsafe fn adopt<T: Number>(
     };
     // SAFETY: by the caller.
     let law = unsafe { build_for::<T>(config, room, faults) }?;
-    let (memory, last, header) = (block.memory(), block.last(), *block.header());
-    match (block.take(), law) {
-        (Either::Plain(_), Either::Plain(law)) => block.with(|l| l.replace(law), |_| ()),
-        (Either::Compensated(_), Either::Compensated(law)) => block.with(|_| (), |l| l.replace(law)),
-        (Either::Compensated(old), Either::Plain(law)) => {
-            let state = law.adopt_from(&old.law, old.state, ());
-            let header = header.of_kind(Kind::Plain);
-            // SAFETY: the block is larger than one without a compensator.
-            unsafe { memory.write(header, last, Loop { law, state }) };
-        }
-        (Either::Plain(old), Either::Compensated(law)) => {
-            // SAFETY: the block has so many cells; they are used until its loop is written, and then by nobody.
-            let cleared = unsafe { memory.clear_cells::<T>(cells) };
+    match (block.kind(), law) {
+        (Kind::Plain, Either::Plain(law)) => block.with(|l| l.replace(law), |_| ()),
+        (Kind::Compensated, Either::Compensated(law)) => block.with(|_| (), |l| l.replace(law)),
+        (Kind::Compensated, Either::Plain(law)) => remove_compensator(&mut block, law),
+        (Kind::Plain, Either::Compensated(law)) => {
+            // SAFETY: the block has so many cells, which are enough for the law: `build_for` has checked it.
+            let cleared = unsafe { block.memory().clear_cells::<T>(cells) };
             let fresh = law.compensator().state(cleared).map_err(|_| Error::Size)?;
-            let state = law.adopt_from(&old.law, old.state, fresh);
-            let mut looped = Loop { law, state };
-            without_address(&mut looped);
-            let header = header.of_kind(Kind::Compensated);
-            // SAFETY: `build_for` has checked that the block is large enough.
-            unsafe { memory.write(header, last, looped) };
+            add_compensator(&mut block, law, fresh);
         }
     }
     Ok(())
+}
+
+#[inline(never)]
+fn remove_compensator<T: Number>(block: &mut Block<T>, law: Controller<T, NoCompensator>) {
+    let Either::Compensated(old) = block.take() else { return };
+    let state = law.adopt_from(&old.law, old.state, ());
+    let (last, header) = (block.last(), block.header().of_kind(Kind::Plain));
+    // SAFETY: the block is larger than one without a compensator.
+    unsafe { block.memory().write(header, last, Loop { law, state }) };
+}
+
+/// `fresh` has the block's cells, which are used until its loop is written, and then by nobody.
+#[inline(never)]
+fn add_compensator<T: Number>(
+    block: &mut Block<T>,
+    law: Controller<T, Delayed<T>>,
+    fresh: <Delayed<T> as Compensate<T>>::State,
+) {
+    let Either::Plain(old) = block.take() else { return };
+    let state = law.adopt_from(&old.law, old.state, fresh);
+    let mut looped = Loop { law, state };
+    without_address(&mut looped);
+    let (last, header) = (block.last(), block.header().of_kind(Kind::Compensated));
+    // SAFETY: a block with cells has the room in front of them.
+    unsafe { block.memory().write(header, last, looped) };
 }
 
 impl<T: Real, C: Compensate<T>> Loop<T, C> {

@@ -1,6 +1,8 @@
 //! The header and the library say the same: every function, constant, structure and field, and the table of offsets that C
 //! compilers assert (`tests/c/layout.c`). What is written here for C is made from the Rust types.
 
+#![allow(clippy::expect_used, clippy::string_slice, clippy::unwrap_used, clippy::indexing_slicing)]
+
 use controller_capi::config::MAX_FACTORS;
 use controller_capi::fault::choice;
 use controller_capi::io::mode;
