@@ -23,17 +23,17 @@ const LEAST: [&str; 3] = ["ctl_config_default", "ctl_f32_init", "ctl_f32_step"];
 /// The committed table of sizes.
 const PAGE: &str = "controller-capi/SIZES.md";
 
-/// The packages of Debian with what the tests of the C interface need, and a program of each.
-const PACKAGES: [(&str, &str); 5] = [
-    ("gcc", "gcc"),
-    ("clang", "clang"),
-    ("valgrind", "valgrind"),
-    ("gcc-arm-none-eabi", "arm-none-eabi-gcc"),
-    ("qemu-system-arm", "qemu-system-arm"),
+/// The packages of Debian with what the tests of the C interface need: a question to a program, and what its answer contains
+/// when it is there. A compiler that does not find a file gives its bare name back.
+const PACKAGES: [(&str, [&str; 2], &str); 7] = [
+    ("gcc", ["gcc", "--version"], ""),
+    ("clang", ["clang", "--version"], ""),
+    ("libclang-rt-dev", ["clang", "--print-file-name=libclang_rt.asan-x86_64.a"], "/"),
+    ("valgrind", ["valgrind", "--version"], ""),
+    ("gcc-arm-none-eabi", ["arm-none-eabi-gcc", "--version"], ""),
+    ("libnewlib-arm-none-eabi", ["arm-none-eabi-gcc", "--print-file-name=rdimon.specs"], "/"),
+    ("qemu-system-arm", ["qemu-system-arm", "--version"], ""),
 ];
-
-/// Libraries that come with them in packages of their own.
-const LIBRARIES: [&str; 2] = ["libnewlib-arm-none-eabi", "libclang-rt-14-dev"];
 
 /// A machine that the archive is shipped for.
 struct Machine {
@@ -80,18 +80,17 @@ pub(crate) enum Then {
 
 /// Installs what the tests of the C interface need, when it may; else says what is lacking.
 pub(crate) fn ready(root: &Path) -> Option<String> {
-    let mut names: Vec<&str> = missing(root);
-    if names.is_empty() {
-        return None;
-    }
-    names.extend(LIBRARIES);
-    packages::install(root, &names, || missing(root).is_empty())
+    let names = missing(root);
+    if names.is_empty() { None } else { packages::install(root, &names, || missing(root).is_empty()) }
 }
 
-/// The packages whose program is not there.
+/// The packages that are not there.
 fn missing(root: &Path) -> Vec<&'static str> {
-    let there = |program: &str| Cmd::new(program, root).arg("--version").probe().is_some();
-    PACKAGES.iter().filter(|(_, program)| !there(program)).map(|(package, _)| *package).collect()
+    let there = |[program, question]: [&str; 2], sign: &str| {
+        Cmd::new(program, root).arg(question).probe().is_some_and(|answer| answer.contains(sign))
+    };
+    let absent = PACKAGES.iter().filter(|(_, question, sign)| !there(*question, sign));
+    absent.map(|(package, ..)| *package).collect()
 }
 
 /// The rung.
