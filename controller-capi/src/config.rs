@@ -135,7 +135,7 @@ pub const STRUCT_SIZE: u32 = size_of::<Config>() as u32;
 
 const _: () = {
     use core::mem::offset_of;
-    assert!(size_of::<Config>() == 608 && align_of::<Config>() == 8);
+    assert!(size_of::<Config>() == 608);
     assert!(offset_of!(Config, struct_size) == 0 && offset_of!(Config, ts) == 56);
     assert!(offset_of!(Config, model_pole_a1) == 352 && offset_of!(Config, model_zero_a2) == 544);
 };

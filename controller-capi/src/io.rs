@@ -154,6 +154,4 @@ const _: () = {
     assert!(offset_of!(Input<f32>, mode) == 28 && offset_of!(Input<f64>, mode) == 56);
     assert!(size_of::<Output<f32>>() == 44 && size_of::<Output<f64>>() == 72);
     assert!(offset_of!(Output<f32>, mode) == 28 && offset_of!(Output<f64>, mode) == 56);
-    assert!(align_of::<Input<f32>>() == 4 && align_of::<Input<f64>>() == 8);
-    assert!(align_of::<Output<f32>>() == 4 && align_of::<Output<f64>>() == 8);
 };

@@ -24,9 +24,6 @@
 //! | [`exports`] | the functions themselves |
 #![no_std]
 
-#[cfg(test)]
-extern crate std;
-
 mod block;
 mod calls;
 pub mod config;

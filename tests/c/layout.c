@@ -1,6 +1,7 @@
 /*
- * The layout of the structures, the same on every machine and for every option about enumerations. One line a field: offset
- * and size in bytes. `controller-capi/tests/header.rs` compares the lines with Rust's structures.
+ * The layout of the structures, the same on every machine and for every option about enumerations; 32-bit x86 aligns double
+ * to 4 bytes, which changes no offset. One line a field: offset and size in bytes. `controller-capi/tests/header.rs`
+ * compares the lines with Rust's structures.
  */
 #include <stddef.h>
 
@@ -22,7 +23,7 @@
         char byte;                                                             \
         type it;                                                               \
     };                                                                         \
-    ASSERT(sizeof(type) == size && offsetof(struct type##_behind_a_byte, it) == align)
+    ASSERT(sizeof(type) == size && offsetof(struct type##_behind_a_byte, it) <= align)
 
 ALL(ctl_config, 608, 8);
 AT(ctl_config, struct_size, 0, 4);
