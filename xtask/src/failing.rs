@@ -1,9 +1,11 @@
 //! Images that fail: each ends by itself, with its exit code, its words and its output off.
 
 use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
 
 use crate::emulator::{self, REFERENCE};
-use crate::shell::Outcome;
+use crate::shell::{Cmd, Outcome, target_dir};
 
 /// The image.
 const FAIL: &str = "fail";
@@ -32,7 +34,49 @@ pub(crate) fn check(root: &Path) -> Outcome<String> {
         }
     }
     misplaced(root, &image)?;
-    Ok(format!("{} failures end safely, an image for another place is refused", WAYS.len()))
+    let orphan = if cfg!(target_os = "linux") { orphaned(root, &image)? } else { "" };
+    Ok(format!("{} failures end safely, an image for another place is refused{orphan}", WAYS.len()))
+}
+
+/// An image that never ends, whose runner is killed: the emulator must not outlive it.
+fn orphaned(root: &Path, image: &Path) -> Outcome<&'static str> {
+    // A name that no other process has in its command line.
+    let copy = image.with_file_name(format!("fail-orphan-{}", std::process::id()));
+    std::fs::copy(image, &copy).map_err(|e| format!("cannot write {}: {e}", copy.display()))?;
+    let runner = target_dir(root).join("debug/controller-emulate");
+    let mut command = Cmd::new(runner, root).env("EMULATE_SECONDS", "60").arg(&copy).arg("spin").command();
+    let mut child =
+        command.stdout(Stdio::null()).spawn().map_err(|e| format!("cannot start the runner: {e}"))?;
+    let name = copy.to_string_lossy().into_owned();
+    let began = waited_until(|| emulators_of(&name) > 0);
+    let killed = child.kill().and_then(|()| child.wait());
+    let ended = waited_until(|| emulators_of(&name) == 0);
+    let _ = std::fs::remove_file(&copy);
+    match (began, killed, ended) {
+        (true, Ok(_), true) => Ok(", a killed runner takes the emulator with it"),
+        (false, ..) => Err("the runner of an image that spins starts no emulator".into()),
+        _ => Err(format!("an emulator outlives its runner: look for a process with {name}")),
+    }
+}
+
+/// Processes of the emulator with this word in their command line, of Linux.
+fn emulators_of(word: &str) -> usize {
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let lines = entries.filter_map(|entry| std::fs::read(entry.path().join("cmdline")).ok());
+    lines
+        .filter(|line| {
+            let line = String::from_utf8_lossy(line);
+            line.starts_with("qemu-system-arm") && line.contains(word)
+        })
+        .count()
+}
+
+/// Waits for at most 10 s; whether it came true.
+fn waited_until(condition: impl Fn() -> bool) -> bool {
+    (0..1000).any(|_| {
+        std::thread::sleep(Duration::from_millis(10));
+        condition()
+    })
 }
 
 /// An image that says it is for another board than it was linked for.
