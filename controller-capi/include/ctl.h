@@ -417,7 +417,7 @@ int32_t ctl_f32_adopt(void *state, size_t size, const ctl_config *config, ctl_fa
 /* Tells the loop that `samples` samples were lost while its last output was applied. */
 int32_t ctl_f32_advance(void *state, size_t size, uint32_t samples);
 
-/* What the last step gave; after init, settle and restore u, v and mode, the rest 0. */
+/* What the last step gave; after init, settle and restore u, v, mode and status, the rest 0. */
 int32_t ctl_f32_read(const void *state, size_t size, ctl_f32_output *output);
 
 /*
