@@ -378,6 +378,60 @@ static void bad_inputs(void)
     CHECK(out.mode == CTL_MODE_AUTO && (out.status & CTL_STATUS_REJECTED) == 0);
 }
 
+#ifdef __arm__
+#define RANDOM_CONFIGURATIONS 200
+#else
+#define RANDOM_CONFIGURATIONS 4000
+#endif
+
+static uint64_t chance = 1;
+
+static uint32_t below(uint32_t n)
+{
+    chance = chance * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(chance >> 33) % n;
+}
+
+/* Configurations with a few fields of any kind: refused with a fault, or a loop whose outputs are finite and in range. */
+static void random_configurations(void)
+{
+    static const double odd[] = {NAN, INFINITY, -INFINITY, 0, -0.0, 1e-320, -1, 0.5, 1, 3, 1e3, 1e12, -1e12, 1e300, 1e-12, 2e9};
+    static const int32_t choice[] = {0, 1, 2, 3, 8, 9, -1, 65535, 65536, INT32_MIN, INT32_MAX};
+    int accepted = 0;
+    for (int i = 0; i < RANDOM_CONFIGURATIONS; i++) {
+        EXPECT(CTL_OK, set_case((int)below(CASES), &config));
+        int32_t *const choices = &config.action;
+        double *const numbers = &config.ts;
+        for (uint32_t change = 0, changes = 1 + below(3); change < changes; change++) {
+            if (below(4) == 0) {
+                choices[below(12)] = choice[below(sizeof choice / sizeof *choice)];
+            } else {
+                numbers[below(69)] = odd[below(sizeof odd / sizeof *odd)];
+            }
+        }
+        int32_t code = FN(init)(state, size, &config, &faults);
+        CHECK(code == CTL_OK || code == CTL_ERROR_CONFIG || code == CTL_ERROR_SIZE);
+        CHECK((code == CTL_OK) == (faults.total == 0));
+        if (code != CTL_OK) {
+            continue;
+        }
+        accepted++;
+        memset(&in, 0, sizeof in);
+        for (int k = 0; k < 30; k++) {
+            in.r = (real)odd[below(sizeof odd / sizeof *odd)];
+            in.y = (real)(0.1 * k);
+            in.has_u_applied = (int32_t)below(2);
+            in.u_applied = (real)odd[below(sizeof odd / sizeof *odd)];
+            in.mode = (int32_t)below(8);
+            EXPECT(CTL_OK, FN(step)(state, size, &in, &out));
+            CHECK(isfinite(out.u) && isfinite(out.v) && isfinite(out.i) && isfinite(out.pd));
+            CHECK(isfinite(out.u_f) && isfinite(out.d_hat) && isfinite(out.r));
+            CHECK(out.u >= (real)config.output_lo && out.u <= (real)config.output_hi);
+        }
+    }
+    CHECK(accepted > RANDOM_CONFIGURATIONS / 10 && accepted < RANDOM_CONFIGURATIONS);
+}
+
 static void arguments(void)
 {
     static const int32_t unknown[] = {0, 7, 8, -1, INT32_MAX, INT32_MIN};
@@ -441,6 +495,7 @@ int main(void)
     other_build();
     bad_configurations();
     bad_inputs();
+    random_configurations();
     arguments();
     texts();
     other_type();
