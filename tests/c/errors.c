@@ -381,7 +381,7 @@ static void bad_inputs(void)
 #ifdef __arm__
 #define RANDOM_CONFIGURATIONS 200
 #else
-#define RANDOM_CONFIGURATIONS 4000
+#define RANDOM_CONFIGURATIONS 1000
 #endif
 
 static uint64_t chance = 1;

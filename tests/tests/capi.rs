@@ -15,6 +15,9 @@ use tools::{Build, Tool, available, folder, root};
 
 const VARIANTS: [&str; 2] = ["f32", "f64"];
 
+/// The programs that check by themselves.
+const PROGRAMS: [&str; 3] = ["errors", "snapshot", "behaviour"];
+
 /// Two scripts in the number type `T`, in files.
 fn scripts<T: Real>(seed: u64, samples: usize) -> ([std::path::PathBuf; 2], String) {
     let scripts = [seed, seed + 1].map(|seed| Script::<T>::random(seed, samples));
@@ -85,7 +88,7 @@ fn outputs_are_those_of_the_core_on_an_emulated_cortex_m() {
             same(variant, seed, &expected, &tools::emulated(&image, &paths));
             // Checks are slow there, and the same for all.
             if target == "thumbv7em-none-eabihf" {
-                for program in ["errors", "snapshot"] {
+                for program in PROGRAMS {
                     tools::passes(&tools::emulated(&tools::image(program, variant, target, flags), &[]));
                 }
             }
@@ -107,11 +110,11 @@ fn scripts_come_to_everything() {
 }
 
 #[test]
-fn every_error_and_every_damaged_snapshot() {
+fn every_error_every_damaged_snapshot_and_the_table_of_the_readme() {
     for compiler in available(&[Tool::Gcc, Tool::Clang]) {
         let build = Build::new(compiler, &["-O1"]);
         for variant in VARIANTS {
-            for program in ["errors", "snapshot"] {
+            for program in PROGRAMS {
                 tools::passes(&tools::run(&build.program(program, variant), &[], &[]));
             }
         }
@@ -129,7 +132,7 @@ fn clean_with_sanitizers() {
         }
         replayed(&build, &[], 1000, 20..22);
         for variant in VARIANTS {
-            for program in ["errors", "snapshot"] {
+            for program in PROGRAMS {
                 tools::passes(&tools::run(&build.program(program, variant), &[], &[]));
             }
         }
@@ -147,7 +150,7 @@ fn clean_under_valgrind() {
         let build = Build::new(compiler, &["-g"]);
         replayed(&build, &valgrind, 300, 30..31);
         for variant in VARIANTS {
-            for program in ["errors", "snapshot"] {
+            for program in PROGRAMS {
                 tools::passes(&tools::run(&build.program(program, variant), &valgrind, &[]));
             }
         }
