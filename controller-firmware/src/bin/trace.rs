@@ -12,6 +12,12 @@ use controller_firmware::trace::{self, Request};
 const USAGE: &str = "usage: trace [SAMPLES [f32|f64|both]]";
 /// Exit code for them.
 const MISUSED: i32 = 2;
+/// Samples in which every loop meets everything ..
+#[cfg(not(target_os = "none"))]
+const ENOUGH: u32 = 20_000;
+/// .. and the exit code when one has not: its hash would then say less than it seems to.
+#[cfg(not(target_os = "none"))]
+const BLIND: i32 = 1;
 
 #[cfg(not(target_os = "none"))]
 fn main() {
@@ -20,7 +26,16 @@ fn main() {
         eprintln!("{USAGE}");
         std::process::exit(MISUSED);
     };
-    trace::run(request, |line| println!("{line}"));
+    let mut blind = 0;
+    trace::run(request, |line| {
+        println!("{line}");
+        let met = line.met.filter(|met| request.samples >= ENOUGH && !met.everything());
+        if let Some(met) = met {
+            eprintln!("{line}: the loop has not met everything: {met:x?}");
+            blind = BLIND;
+        }
+    });
+    std::process::exit(blind);
 }
 
 #[cfg(target_os = "none")]

@@ -17,7 +17,8 @@ use controller_core::{
 use core::fmt;
 use hash::Hash;
 use laws::{config, estimator, fifth_order, observer, period, third_order};
-use run::trace;
+pub use run::Met;
+use run::{Traced, trace};
 
 /// Delay memory \[samples\].
 const CAPACITY: usize = 40;
@@ -90,11 +91,13 @@ pub struct Line {
     pub bits: Option<usize>,
     /// Over the bits of everything the loop gave.
     pub hash: u64,
+    /// What the loop went through; nothing in the line over all.
+    pub met: Option<Met>,
 }
 
 impl fmt::Display for Line {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, samples, bits, hash } = self;
+        let Self { name, samples, bits, hash, .. } = self;
         match bits {
             Some(bits) => write!(f, "{name} f{bits} {samples} {hash:016x}"),
             None => write!(f, "{name} {samples} {hash:016x}"),
@@ -116,12 +119,14 @@ pub fn run(request: Request, mut print: impl FnMut(Line)) {
     if DOUBLE && request.types != Types::F32 {
         loops::<f64>(request.samples, &mut each);
     }
-    print(Line { name: "all", samples: request.samples, bits: None, hash: all.value() });
+    let (samples, hash) = (request.samples, all.value());
+    print(Line { name: "all", samples, bits: None, hash, met: None });
 }
 
 /// All loops in one number type.
 fn loops<T: Real>(samples: u32, print: &mut impl FnMut(Line)) {
-    let mut line = |name, hash| print(Line { name, samples, bits: Some(32 * T::WORDS), hash });
+    let bits = Some(32 * T::WORDS);
+    let mut line = |name, Traced { hash, met }| print(Line { name, samples, bits, hash, met: Some(met) });
     line("pid", pid::<T>(samples));
     line("adrc", adrc::<T>(samples));
     line("pid-de", pid_de::<T>(samples));
@@ -135,41 +140,41 @@ fn loops<T: Real>(samples: u32, print: &mut impl FnMut(Line)) {
 // which then has to hold one of them at a time.
 
 #[inline(never)]
-fn pid<T: Real>(samples: u32) -> u64 {
+fn pid<T: Real>(samples: u32) -> Traced {
     trace(samples, (), |i| around::<T, _>(i, NoCompensator))
 }
 
 #[inline(never)]
-fn adrc<T: Real>(samples: u32) -> u64 {
+fn adrc<T: Real>(samples: u32) -> Traced {
     trace(samples, (), |i| {
         Controller::<T, _, _>::with_adrc(&laws::around_adrc(i), &laws::adrc(i), period(i)).ok()
     })
 }
 
 #[inline(never)]
-fn pid_de<T: Real>(samples: u32) -> u64 {
+fn pid_de<T: Real>(samples: u32) -> Traced {
     trace(samples, Default::default(), |i| around(i, compensator::<T, 2, 1>(i, &estimator(i, 0.2))?))
 }
 
 #[inline(never)]
-fn pid_de_first_order<T: Real>(samples: u32) -> u64 {
+fn pid_de_first_order<T: Real>(samples: u32) -> Traced {
     trace(samples, Default::default(), |i| around(i, compensator::<T, 1, 2>(i, &estimator(i, 0.0))?))
 }
 
 #[inline(never)]
-fn pi_dob<T: Real>(samples: u32) -> u64 {
+fn pi_dob<T: Real>(samples: u32) -> Traced {
     let model = || PlantModel::first_order(1.0, 1.2, 0.0);
     trace(samples, Default::default(), |i| around(i, compensator::<T, 1, 0>(i, &observer(i, model(), None))?))
 }
 
 #[inline(never)]
-fn dob_third_order<T: Real>(samples: u32) -> u64 {
+fn dob_third_order<T: Real>(samples: u32) -> Traced {
     let config = |i| observer(i, third_order(), None);
     trace(samples, Default::default(), |i| around(i, compensator::<T, 3, 0>(i, &config(i))?))
 }
 
 #[inline(never)]
-fn any<T: Real>(samples: u32) -> u64 {
+fn any<T: Real>(samples: u32) -> Traced {
     let blank = any_compensator::<T>(0).and_then(|law| law.state([T::ZERO; CAPACITY]).ok());
     trace(samples, blank.expect("the delay fits"), |i| around(i, any_compensator::<T>(i)?))
 }

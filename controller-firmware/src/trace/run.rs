@@ -5,7 +5,7 @@ use super::hash::Hash;
 use super::laws::LAWS;
 use controller_core::{
     Compensate, Controller, ControllerInput, ControllerOutput, ControllerState, Mode, Quality, Real,
-    Regulator,
+    Regulator, Status,
 };
 
 /// Two lags and a gain, `x <- x + g*(input - x)`.
@@ -76,7 +76,56 @@ impl<T: Real> Surroundings<T> {
     }
 }
 
-/// Runs one loop through [`LAWS`] laws; gives the hash of its trace.
+/// What a loop went through: a hash over samples that meet nothing would say nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Met {
+    /// Every status bit that a sample had.
+    pub status: u32,
+    /// The modes in force, bit `n` for the mode numbered `n`.
+    pub modes: u32,
+    /// Laws taken over from another one.
+    pub swaps: u32,
+    /// Times that samples were lost.
+    pub losses: u32,
+    /// States saved and restored.
+    pub restored: u32,
+}
+
+impl Met {
+    /// Whether everything came that comes to each of the loops: every mode, limits and rates, a set-point limited and on its
+    /// way, samples bad, held, uncertain, the fallback and the wait for its end, lost samples, three alarms, swaps, snapshots.
+    #[must_use]
+    pub fn everything(&self) -> bool {
+        let bits = [
+            Status::LIMITED_HIGH,
+            Status::LIMITED_LOW,
+            Status::RATE_LIMITED,
+            Status::SETPOINT_LIMITED,
+            Status::SETPOINT_RAMPING,
+            Status::BAD_INPUT,
+            Status::UNCERTAIN,
+            Status::HELD,
+            Status::FALLBACK,
+            Status::AWAITING_ACKNOWLEDGEMENT,
+            Status::OVERRUN,
+            Status::ALARM_HI,
+            Status::ALARM_LO,
+            Status::ALARM_DEVIATION,
+        ];
+        let modes = Mode::REQUESTS.into_iter().chain([Mode::Fallback]);
+        bits.into_iter().all(|bit| Status::from_bits(self.status).has(bit))
+            && modes.into_iter().all(|mode| self.modes & 1 << (mode as u32) != 0)
+            && [self.swaps, self.losses, self.restored].iter().all(|&count| count > 0)
+    }
+}
+
+/// A loop's trace as one number, and what was in it.
+pub(super) struct Traced {
+    pub(super) hash: u64,
+    pub(super) met: Met,
+}
+
+/// Runs one loop through [`LAWS`] laws.
 ///
 /// # Panics
 /// When a law cannot be built or a snapshot not be read back.
@@ -84,7 +133,7 @@ pub(super) fn trace<T: Real, C: Compensate<T>, L: Regulator<T>>(
     samples: u32,
     blank: C::State,
     law: impl Fn(usize) -> Option<Controller<T, C, L>>,
-) -> u64 {
+) -> Traced {
     // One after the other into their places: there is stack for one besides them.
     let mut laws = [const { None }; LAWS];
     for (i, place) in laws.iter_mut().enumerate() {
@@ -95,6 +144,7 @@ pub(super) fn trace<T: Real, C: Compensate<T>, L: Regulator<T>>(
     let mut around = Surroundings::new();
     let mut plant = Plant::new();
     let mut hash = Hash::default();
+    let mut met = Met::default();
     let mut now = 0;
     let mut y = T::ZERO;
     for _ in 0..samples {
@@ -103,19 +153,24 @@ pub(super) fn trace<T: Real, C: Compensate<T>, L: Regulator<T>>(
         if chance.once_in(1500) {
             let next = chance.below(LAWS as u32) as usize;
             law(next).adopt(law(now), &mut state);
+            met.swaps += u32::from(next != now);
             now = next;
         }
         if chance.once_in(1200) {
             law(now).advance(&mut state, 1 + chance.below(30));
+            met.losses += 1;
         }
         if chance.once_in(2500) {
             save_and_restore(law(now), &mut state, &mut hash);
+            met.restored += 1;
         }
         let out = law(now).step(&mut state, &around.input);
         add(&mut hash, &out);
+        met.status |= out.status.bits();
+        met.modes |= 1 << (out.mode as u32);
         y = plant.step(out.u + around.load);
     }
-    hash.value()
+    Traced { hash: hash.value(), met }
 }
 
 /// Everything that a sample gave.
