@@ -67,7 +67,7 @@ pub(crate) fn run(root: &Path, then: Then) -> Outcome<String> {
         Then::Check => {
             print!("{text}");
             if !root.join(&tables[0].0).is_file() {
-                return Ok(format!("there is no table for {version}: nothing to compare with"));
+                return Err(format!("there is no table for {version}: cargo xtask size --update writes one"));
             }
             for (path, text) in &tables {
                 let committed = std::fs::read_to_string(root.join(path)).unwrap_or_default();

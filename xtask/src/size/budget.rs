@@ -54,7 +54,7 @@ pub(super) fn of(row: &Row) -> Option<&'static Budget> {
 
 /// Why a step takes more stack than it should, if it does.
 pub(super) fn stack_note(row: &Row) -> Option<&'static str> {
-    let limited = row.number == "f32" && row.board.target.ends_with("hf") && row.step.stack > STACK;
+    let limited = row.number == "f32" && row.in_hardware() && row.step.stack > STACK;
     limited.then_some(if row.block.starts_with("loop") { LOOP_STACK } else { "" })
 }
 
@@ -71,6 +71,17 @@ pub(super) fn check(rows: &[Row]) -> Outcome {
                 faults.push(format!("{block} keeps its budget of {limit}: it is no longer known not to"));
             }
             _ => {}
+        }
+        if !row.block.starts_with("loop")
+            && row.block != "pid-limit"
+            && row.in_hardware()
+            && row.step.dearest().is_some()
+        {
+            let (block, number, board) = (&row.block, &row.number, row.board.name);
+            faults.push(format!(
+                "a step of {block} in {number} on {board} must take the same for every input: {:?}",
+                row.step.classes
+            ));
         }
         if stack_note(row) == Some("") {
             let (block, board, stack) = (&row.block, row.board.name, row.step.stack);
@@ -100,6 +111,15 @@ mod tests {
         assert!(check(&[row("pid", 66, 8)]).unwrap_err().contains("budget is 65"));
         assert!(check(&[row("loop-pid", 211, 8)]).is_ok());
         assert!(check(&[row("loop-pid", 210, 8)]).unwrap_err().contains("no longer"));
+    }
+
+    #[test]
+    fn a_law_takes_the_same_for_every_input() {
+        let mut uneven = row("pid", 60, 8);
+        uneven.step.classes.push(("random".into(), Range { least: 58, most: 60 }));
+        assert!(check(&[uneven.clone()]).unwrap_err().contains("for every input"));
+        uneven.number = "f64".into();
+        assert!(check(&[uneven]).is_ok(), "in software a number decides");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use controller_pil::board::BOARDS;
 
 use super::measure::{Function, Row};
 use super::{budget, peers};
+use crate::swap::INTERRUPTS_OFF;
 
 /// Names of the blocks.
 const NAMES: [(&str, &str); 11] = [
@@ -29,7 +30,7 @@ pub(super) fn page(rows: &[Row], compiler: &str) -> String {
          Written by `cargo xtask size --update` and checked by `cargo xtask size`; {compiler}, release profile. Every number\n\
          of every board, with the classes of inputs, is in `tests/target/`.\n\n\
          Instructions are counted in the emulator, exactly, from the first instruction of a call to its return. They are not\n\
-         cycles: a Cortex-M4F takes about 1.5 to 2 cycles for one of this code, more with wait states of the flash. Code and\n\
+         cycles: a Cortex-M4F takes about 1.5 to 1.8 cycles for one of this code, more with wait states of the flash. Code and\n\
          stack are those of the function with everything it calls; RAM is law and state, with a delay line of 24 samples\n\
          where there is one (one number more for each further sample). One number means: the same for every input.\n\n\
          ## Reference board: {}, f32\n\n\
@@ -102,21 +103,44 @@ pub(super) fn page(rows: &[Row], compiler: &str) -> String {
         text.push('\n');
     }
     text.push_str(
-        "\nCores without a floating-point unit, and all but the M7 in f64, compute with a library: the count then depends on\n\
-         the numbers.\n\n## Building a law, and swapping it\n\n\
+        &format!("\nCores without a floating-point unit, and all but the M7 in f64, compute with a library: the count then depends on\n\
+         the numbers. {}\n\n## Building a law, and swapping it\n\n\
          On the reference board in f32. `new` computes in f64, which this core does in software: build laws when the program\n\
          starts, or in the main context.\n\n\
-         | block | `new`: instructions | stack B | `adopt`: instructions | stack B |\n|---|---|---|---|---|\n",
+         | block | `new`: instructions | stack B | `adopt`: instructions | stack B |\n|---|---|---|---|---|\n", in_software(rows)),
     );
     for row in rows.iter().filter(reference).filter(single) {
         let (name, new, adopt) = (name(&row.block), most(&row.new), most(&row.adopt));
         text.push_str(&format!("| {name} | {new} | {} | {adopt} | {} |\n", row.new.stack, row.adopt.stack));
     }
-    text.push_str(
+    text.push_str(&format!(
         "\n`new` of a loop is without that of its compensator. While a law of 220 bytes is handed to the interrupt by a\n\
-         `ParamCell`, interrupts are off for 237 instructions (the rung `swap` counts them and fails above 250).\n",
-    );
+         `ParamCell`, interrupts are off for {INTERRUPTS_OFF} instructions (the rung `swap` counts them).\n",
+    ));
     text
+}
+
+/// How much more software takes, a law in any sample and a loop in a usual one.
+fn in_software(rows: &[Row]) -> String {
+    let mut laws = Vec::new();
+    let mut loops = Vec::new();
+    for row in rows.iter().filter(|row| !row.in_hardware()) {
+        let is_loop = row.block.starts_with("loop");
+        let count = |row: &Row| if is_loop { row.step.class("nominal") } else { row.step.all() };
+        let reference = rows.iter().find(|other| {
+            (other.board.name, other.number.as_str(), &other.block) == (BOARDS[0].name, "f32", &row.block)
+        });
+        if let (Some(one), Some(many)) = (reference.and_then(count), count(row)) {
+            let list = if is_loop { &mut loops } else { &mut laws };
+            list.extend([many.least / one.least.max(1), many.most.div_ceil(one.most.max(1))]);
+        }
+    }
+    let span =
+        |list: &[u32]| (list.iter().min().copied().unwrap_or(0), list.iter().max().copied().unwrap_or(0));
+    let ((a, b), (c, d)) = (span(&laws), span(&loops));
+    format!(
+        "Beside the reference\nboard in f32 a law takes {a} to {b} times as many instructions, a loop in a usual sample {c} to {d} times."
+    )
 }
 
 /// What the classes of a loop's inputs are.

@@ -80,6 +80,13 @@ pub(super) struct Row {
     pub(super) new: Function,
 }
 
+impl Row {
+    /// Whether the board computes in this number type by itself, not by a library.
+    pub(super) fn in_hardware(&self) -> bool {
+        self.board.target.ends_with("hf") && (self.number == "f32" || self.board.core == "Cortex-M7")
+    }
+}
+
 /// Measures everything on every board.
 pub(super) fn all(root: &Path) -> Outcome<Vec<Row>> {
     Cmd::cargo(root).args(["build", "--quiet", "-p", "controller-emulate"]).run()?;
