@@ -78,7 +78,10 @@ fn scenario(text: &str) -> Scenario {
 
 fn text_of(scenario: &Scenario, name: &str, precision: Precision, origin: &str) -> String {
     let spec = scenario.controllers.iter().find(|spec| spec.name == name).expect("a controller of this name");
-    Export::new(scenario, spec, precision, None).expect("it can be exported").text(Format::Rust, origin).expect("Rust has every loop")
+    Export::new(scenario, spec, precision, None)
+        .expect("it can be exported")
+        .text(Format::Rust, origin)
+        .expect("Rust has every loop")
 }
 
 /// Compares the committed file with what the program writes today.

@@ -52,9 +52,16 @@ Examples:
   controller-sim export loop.toml --format rust --save src/loop_law.rs
   controller-sim export my.toml --controller 'PI + DOB' --format rust --capacity 64
   controller-sim export loop.toml --format rust --set 'controller.\"DE-MOMI\".pid.kp=2'
+  controller-sim export loop.toml --format st --save fb_loop.st         numbers are REAL; --precision f64: LREAL
+  controller-sim export loop.toml --format st-test --save test_loop.st  a program that tests the block in the PLC
+  controller-sim export loop.toml --format c --save loop.h              with controller-capi's ctl.h
 
 The law is built in the target's number type before a line is written. The Rust module checks when it is compiled that
-nobody changed a number since.";
+nobody changed a number since.
+
+Structured Text is one function block without any C. KP, TN, TV, TF are inputs: a change becomes coefficients at the
+next call, without a bump; what cannot be used is refused with a status bit, and the old values stay. It is not for
+an ADRC (exit code 3).";
 
 pub(super) const DESIGN: &str = "\
 Examples:

@@ -48,6 +48,10 @@ enum Language {
     Rust,
     /// A function block in plain Structured Text of IEC 61131-3, for PLCs that link nothing
     St,
+    /// A program in Structured Text that replays a recorded trace through that block and compares
+    StTest,
+    /// A header of constants for the C interface (ctl.h)
+    C,
 }
 
 impl From<Language> for Format {
@@ -55,6 +59,8 @@ impl From<Language> for Format {
         match language {
             Language::Rust => Self::Rust,
             Language::St => Self::StructuredText,
+            Language::StTest => Self::StructuredTextTest,
+            Language::C => Self::C,
         }
     }
 }
@@ -123,8 +129,10 @@ fn refused(spec: &ControllerSpec, why: &Refused) -> Failure {
     let problem = match why {
         Refused::Cascade => Problem::new("refused", format!("`{name}` is a cascade: two loops, two laws"))
             .help("write each of the two as a controller of its own, then export both"),
-        Refused::Adrc => Problem::new("refused", format!("`{name}` is an ADRC, which only `--format rust` writes"))
-            .help("use `--format rust`, or close the loop by a PID with a disturbance observer"),
+        Refused::Adrc => {
+            Problem::new("refused", format!("`{name}` is an ADRC, which only `--format rust` writes"))
+                .help("use `--format rust`, or close the loop by a PID with a disturbance observer")
+        }
         Refused::Faults(faults) => {
             let list: Vec<String> = faults.as_slice().iter().map(ToString::to_string).collect();
             Problem::new("refused", format!("`{name}` cannot run so: {}", list.join("; ")))

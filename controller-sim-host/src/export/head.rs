@@ -38,29 +38,38 @@ pub(super) fn lines(export: &Export<'_>, origin: &str) -> Vec<String> {
         plain(export.name()),
         plain(origin)
     )];
-    lines.push(format!("Call it once every {:?} s, in a task of this period. Numbers are {real}.", export.ts()));
+    lines.push(format!(
+        "Call it once every {:?} s, in a task of this period. Numbers are {real}.",
+        export.ts()
+    ));
     let mut more = |words: &str| lines.push(words.to_owned());
     more("Do not change numbers here: they have passed checks that this file cannot repeat.");
     more("Bits: every output is that of the reference step, bit for bit, where");
     match export.precision {
         Precision::F32 => {
-            more("- each assignment of a REAL is rounded to IEEE 754 single precision, to nearest, ties to even;");
+            more(
+                "- each assignment of a REAL is rounded to IEEE 754 single precision, to nearest, ties to even;",
+            );
             more("  one operation stands in each, so that it may be formed in REAL or in LREAL;");
             more("- LREAL, used only while tuning, is IEEE 754 double precision;");
         }
         Precision::F64 => {
-            more("- each operation on LREAL is rounded once, to IEEE 754 double precision, to nearest, ties to even;");
+            more(
+                "- each operation on LREAL is rounded once, to IEEE 754 double precision, to nearest, ties to even;",
+            );
         }
     }
     more("- no statement is fused with another or rearranged (no fast or relaxed floating-point option);");
     more("- numbers below the normal range are kept, and comparisons with NaN are false.");
     more("Elsewhere the block does the same to rounding; a NaN or infinite input may then not be found.");
-    more("An instance settles itself at its first good measurement. Parameters are declared with their units.");
+    more(
+        "An instance settles itself at its first good measurement. Parameters are declared with their units.",
+    );
     lines
 }
 
 /// Text of a person in a comment: printable, and nothing that could end or begin one.
-fn plain(text: &str) -> String {
+pub(super) fn plain(text: &str) -> String {
     let shown = |c: char| if c.is_ascii_graphic() && !"*{}$\\".contains(c) { c } else { ' ' };
     text.chars().map(shown).collect()
 }

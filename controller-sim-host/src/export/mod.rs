@@ -4,14 +4,16 @@
 //! before a line of it is written.
 
 pub mod block;
+mod c_header;
 mod function_block;
 mod head;
 mod rust;
 pub mod st;
+mod st_test;
 
-use block::Block;
 use crate::scenario::{ControllerSpec, Scenario};
 use crate::simulate::{AnyLaw, Precision};
+use block::Block;
 use controller_core::{AnyCompensator, CompensatorConfig, ConfigErrors};
 
 /// In what the loop is written.
@@ -21,6 +23,10 @@ pub enum Format {
     Rust,
     /// A function block in Structured Text of IEC 61131-3.
     StructuredText,
+    /// A program in Structured Text that replays a trace through that block.
+    StructuredTextTest,
+    /// A header of constants for the C interface.
+    C,
 }
 
 impl Format {
@@ -30,6 +36,8 @@ impl Format {
         match self {
             Self::Rust => "rust",
             Self::StructuredText => "st",
+            Self::StructuredTextTest => "st-test",
+            Self::C => "c",
         }
     }
 }
@@ -89,9 +97,14 @@ impl<'a> Export<'a> {
     /// # Errors
     /// A loop that `format` has no words for.
     pub fn text(&self, format: Format, origin: &str) -> Result<String, Refused> {
+        if self.spec.adrc.is_some() && format != Format::Rust {
+            return Err(Refused::Adrc);
+        }
         Ok(match format {
             Format::Rust => rust::text(self, origin),
             Format::StructuredText => st::function_block(&self.block(origin)?, self.precision),
+            Format::StructuredTextTest => st_test::text(self, origin),
+            Format::C => c_header::text(self, origin),
         })
     }
 

@@ -7,17 +7,8 @@ use std::fmt::Write;
 /// The file of a function block whose numbers are of the type `precision`.
 #[must_use]
 pub fn function_block(block: &Block, precision: Precision) -> String {
-    pou(block, precision, "FUNCTION_BLOCK")
-}
-
-/// The same statements as a program.
-pub(super) fn program(block: &Block, precision: Precision) -> String {
-    pou(block, precision, "PROGRAM")
-}
-
-fn pou(block: &Block, precision: Precision, keyword: &str) -> String {
     let mut text = Text { out: String::new(), precision };
-    text.line(0, &format!("{keyword} {}", block.name));
+    text.line(0, &format!("FUNCTION_BLOCK {}", block.name));
     for line in &block.head {
         text.line(0, &format!("(* {line} *)"));
     }
@@ -27,12 +18,12 @@ fn pou(block: &Block, precision: Precision, keyword: &str) -> String {
     text.section(block, "VAR", &[Role::Constant, Role::Coefficient, Role::State, Role::Scratch]);
     text.line(0, "");
     text.all(&block.body, 0);
-    text.line(0, &format!("END_{keyword}"));
+    text.line(0, "END_FUNCTION_BLOCK");
     text.out
 }
 
 /// The keyword of a type.
-fn keyword(kind: Type, precision: Precision) -> &'static str {
+pub(super) fn keyword(kind: Type, precision: Precision) -> &'static str {
     match kind {
         Type::Flag => "BOOL",
         Type::Count => "DINT",
@@ -46,7 +37,7 @@ fn keyword(kind: Type, precision: Precision) -> &'static str {
 }
 
 /// The exact decimals: read as double precision, and then rounded to the type, they are `value` again.
-fn decimal(value: f64) -> String {
+pub(super) fn decimal(value: f64) -> String {
     let text = format!("{value:?}");
     match text.split_once('e') {
         None => text,
@@ -70,7 +61,8 @@ impl Text {
     }
 
     fn section(&mut self, block: &Block, opening: &str, roles: &[Role]) {
-        let list: Vec<&Variable> = block.variables.iter().filter(|v| roles.contains(&v.role)).collect();
+        let of = |role: Role| block.variables.iter().filter(move |v| v.role == role);
+        let list: Vec<&Variable> = roles.iter().flat_map(|role| of(*role)).collect();
         if list.is_empty() {
             return;
         }
@@ -78,7 +70,9 @@ impl Text {
         let mut last = None;
         for variable in list {
             let about = match variable.role {
-                Role::Constant => "numbers that never change: variables, so that no translator makes literals of them",
+                Role::Constant => {
+                    "numbers that never change: variables, so that no translator makes literals of them"
+                }
                 Role::Coefficient => "coefficients of the PID",
                 Role::State => "state",
                 Role::Scratch => "scratch of one sample",
@@ -99,25 +93,16 @@ impl Text {
             Some(cells) => format!("ARRAY [0..{}] OF {kind}", cells.saturating_sub(1)),
             None => kind.to_owned(),
         };
-        let list = |of: Vec<String>| {
-            let rows: Vec<String> = of.chunks(8).map(|row| row.join(", ")).collect();
-            format!(" := [{}]", rows.join(",\n        "))
-        };
         let initial = match &variable.initial {
             Initial::Zero => String::new(),
             Initial::Number(value) => format!(" := {}", decimal(*value)),
             Initial::Count(n) => format!(" := {n}"),
-            Initial::Word(bits) => format!(" := 16#{bits:08X}"),
+            // Not all front ends know numbers with a base.
+            Initial::Word(bits) => format!(" := {bits}"),
             Initial::Flag(is) => format!(" := {}", truth(*is)),
-            Initial::Numbers(values) => list(values.iter().map(|value| decimal(*value)).collect()),
-            Initial::Counts(values) => list(values.iter().map(ToString::to_string).collect()),
-            Initial::Words(values) => list(values.iter().map(|bits| format!("16#{bits:08X}")).collect()),
         };
-        let comment = if variable.comment.is_empty() {
-            String::new()
-        } else {
-            format!(" (* {} *)", variable.comment)
-        };
+        let comment =
+            if variable.comment.is_empty() { String::new() } else { format!(" (* {} *)", variable.comment) };
         self.line(1, &format!("{} : {kind}{initial};{comment}", variable.name));
     }
 
@@ -196,9 +181,10 @@ impl Text {
             Expression::Negative(a) => format!("-({})", self.expression(a, false)),
             Expression::Convert(kind, a) => {
                 let a = self.expression(a, false);
+                // In parentheses of its own: some front ends take a name in a call for that of a parameter.
                 match (self.precision, kind) {
-                    (Precision::F32, Type::Long) => format!("REAL_TO_LREAL({a})"),
-                    (Precision::F32, _) => format!("LREAL_TO_REAL({a})"),
+                    (Precision::F32, Type::Long) => format!("REAL_TO_LREAL(({a}))"),
+                    (Precision::F32, _) => format!("LREAL_TO_REAL(({a}))"),
                     (Precision::F64, _) => a,
                 }
             }
@@ -206,6 +192,6 @@ impl Text {
     }
 }
 
-fn truth(is: bool) -> &'static str {
+pub(super) fn truth(is: bool) -> &'static str {
     if is { "TRUE" } else { "FALSE" }
 }

@@ -82,3 +82,44 @@ fn the_example_of_set_works_on_a_designed_loop() {
     let shown = folder.done(&["export", "loop.toml", "--format", "rust", "--set", example]);
     assert!(shown.contains("kp: 2.0,"), "{example}\n{shown}");
 }
+
+#[test]
+fn a_loop_is_written_for_a_plc() {
+    let folder = Folder::new("export-st");
+    folder.write("two.toml", TWO);
+    let export = |format: &str, more: &[&str]| {
+        let arguments = ["export", "two.toml", "--controller", "second", "--format", format];
+        folder.done(&[&arguments, more].concat())
+    };
+    let block = export("st", &[]);
+    for part in ["FUNCTION_BLOCK FB_SECOND\n", "    KP : REAL := 2.0;", "(* second: the loop of two.toml"] {
+        assert!(block.contains(part), "`{part}` is not in:\n{block}");
+    }
+    assert!(export("st", &["--precision", "f64"]).contains("    KP : LREAL := 2.0;"));
+    assert!(export("st-test", &[]).starts_with("PROGRAM TEST_SECOND\n"));
+    let header = export("c", &[]);
+    for part in ["#define LOOP_SECOND_TS 0.1\n", "#define LOOP_SECOND_DELAY 10\n", "config->kfd = 0.5;"] {
+        assert!(header.contains(part), "`{part}` is not in:\n{header}");
+    }
+    assert_eq!(export("st", &["--save", "second.st"]), "wrote second.st\n");
+    assert_eq!(folder.read("second.st"), block);
+    let arguments = ["export", "two.toml", "--controller", "second", "--format", "st", "--json"];
+    let object = json(&folder.run(&arguments));
+    assert_eq!((object["format"].as_str(), object["text"].as_str()), (Some("st"), Some(&*block)));
+}
+
+#[test]
+fn a_plc_gets_no_adrc() {
+    let folder = Folder::new("export-st-adrc");
+    let (base, _) = TWO.split_once("[[controller]]").expect("controllers");
+    let adrc = "[[controller]]\nname = \"a\"\nadrc = { b0 = 5.0, kp = 4.0, kd = 4.0, beta1 = 24.0, beta2 = 192.0, beta3 = 512.0 }\n";
+    folder.write("adrc.toml", &[base, adrc].concat());
+    for format in ["st", "st-test", "c"] {
+        let output = folder.run(&["export", "adrc.toml", "--format", format]);
+        let said = text(&output.stderr);
+        assert_eq!((output.status.code(), text(&output.stdout)), (Some(3), ""), "{said}");
+        assert!(said.contains("`a` is an ADRC") && said.contains("--format rust"), "{said}");
+    }
+    let output = folder.run(&["export", "adrc.toml", "--format", "st", "--json"]);
+    assert_eq!((output.status.code(), json(&output)["error"]["code"].as_str()), (Some(3), Some("refused")));
+}

@@ -75,12 +75,7 @@ impl Builder {
     }
 
     /// The statements of one or the other.
-    pub fn either(
-        &mut self,
-        condition: Expression,
-        yes: impl FnOnce(&mut Self),
-        no: impl FnOnce(&mut Self),
-    ) {
+    pub fn either(&mut self, condition: Expression, yes: impl FnOnce(&mut Self), no: impl FnOnce(&mut Self)) {
         let yes = self.part(yes);
         let mut no = self.part(no);
         let mut branches = vec![(condition, yes)];

@@ -57,12 +57,6 @@ pub enum Initial {
     Word(u32),
     /// True or false.
     Flag(bool),
-    /// A number for every cell.
-    Numbers(Vec<f64>),
-    /// A whole number for every cell.
-    Counts(Vec<i32>),
-    /// Bits for every cell.
-    Words(Vec<u32>),
 }
 
 /// A variable of a block.

@@ -48,8 +48,7 @@ fn from_y(b: &mut Builder, chains: &Chains, y: &str, lags: Lags) {
         step(b, &lag("WY", n), &format!("CG{n}"), "CX", "DIFF", lags);
         b.set("CX", x("BEFORE") + x(&format!("FY{n}")) * x("DIFF"));
         step(b, &lag("WY", m), &format!("CG{m}"), "CX", "DIFF2", lags);
-        let [dc, e1, e2] =
-            [format!("DC{m}"), format!("EY{n}"), format!("EY{m}")].map(|name| x(&name));
+        let [dc, e1, e2] = [format!("DC{m}"), format!("EY{n}"), format!("EY{m}")].map(|name| x(&name));
         b.set("CX", (dc * x("BEFORE") + e2 * x("DIFF2")) + e1 * x("DIFF"));
         n += 2;
     }

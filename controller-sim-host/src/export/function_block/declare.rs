@@ -60,7 +60,8 @@ pub(super) fn all(b: &mut Builder, plan: &Plan) {
 }
 
 fn inputs(b: &mut Builder, plan: &Plan) {
-    let mut real = |name: &str, comment: &str| b.declare(Role::Input, Type::Real, name, Initial::Zero, comment);
+    let mut real =
+        |name: &str, comment: &str| b.declare(Role::Input, Type::Real, name, Initial::Zero, comment);
     real("SP", "set-point [y]");
     real("SP_CAS", "remote set-point, used in Cascade [y]");
     real("PV", "measurement [y]");
@@ -140,9 +141,11 @@ fn names(b: &mut Builder, plan: &Plan) {
     b.declare(Role::Named, Type::Word, "ST_NONE", Initial::Word(0), "no bit");
     for (name, bit) in BITS {
         let what = Status::NAMES.iter().find(|(known, _)| *known == bit).map_or("", |(_, what)| what);
-        b.declare(Role::Named, Type::Word, name, Initial::Word(bit.bits()), what);
+        let unused = if bit == Status::OVERRUN { ", never set by this block" } else { "" };
+        let what = format!("bit {}: {what}{unused}", bit.bits().trailing_zeros());
+        b.declare(Role::Named, Type::Word, name, Initial::Word(bit.bits()), &what);
     }
-    let what = "tuned values cannot be used, the old ones stay";
+    let what = "bit 24: tuned values cannot be used, the old ones stay";
     b.declare(Role::Named, Type::Word, "ST_PAR_REFUSED", Initial::Word(PAR_REFUSED), what);
 }
 
@@ -163,7 +166,7 @@ fn numbers(b: &mut Builder, plan: &Plan) {
     real("SP_STEP_UP", n.setpoint_steps.1, "longest rise of the set-point in a sample [y]");
     real("SP_STEP_DOWN", -n.setpoint_steps.0, "longest fall of the set-point in a sample, below 0 [y]");
     real("DEADBAND", n.deadband, "half width of the error deadband [y]");
-    real("DEADBAND_NEG", -n.deadband, "its lower end [y]");
+    real("DEADBAND_NEG", 0.0 - n.deadband, "its lower end [y]");
     real("FF_LO", n.offset.0, "lowest feed-forward [u]");
     real("FF_HI", n.offset.1, "highest feed-forward [u]");
     real("OP_LO", n.output.0, "lowest output [u]");
@@ -180,7 +183,11 @@ fn numbers(b: &mut Builder, plan: &Plan) {
     if plan.slow_fallback() {
         let (down, up) = n.output_steps;
         real("FB_STEP_UP", smaller(n.fallback_step, up), "longest rise in a sample of a fallback [u]");
-        real("FB_STEP_DOWN", -smaller(n.fallback_step, down), "longest fall in a sample of a fallback, below 0 [u]");
+        real(
+            "FB_STEP_DOWN",
+            -smaller(n.fallback_step, down),
+            "longest fall in a sample of a fallback, below 0 [u]",
+        );
     }
     real("I_MAX", n.integral_bound, "bound of the integral term: nothing overflows [u]");
     real("I_MIN", -n.integral_bound, "its lower end [u]");
@@ -216,11 +223,23 @@ fn compensator(b: &mut Builder, chains: &Chains) {
         let n = at + 1;
         let value = |list: &[f64]| list.get(at).copied().unwrap_or_default();
         real(&format!("CG{n}"), value(&chains.g), "compensator: gain of lag");
-        real(&format!("EU{n}"), value(&chains.u_lead), "compensator: weight of a difference in the chain of outputs");
-        real(&format!("EY{n}"), value(&chains.y_lead), "compensator: weight of a difference in the chain of PV");
+        real(
+            &format!("EU{n}"),
+            value(&chains.u_lead),
+            "compensator: weight of a difference in the chain of outputs",
+        );
+        real(
+            &format!("EY{n}"),
+            value(&chains.y_lead),
+            "compensator: weight of a difference in the chain of PV",
+        );
         // Two lags make a section: the first feeds the second, the last has the static gain.
         if n % 2 == 1 && n < order {
-            real(&format!("FY{n}"), value(&chains.y_feed), "compensator: share of a difference fed to the next lag");
+            real(
+                &format!("FY{n}"),
+                value(&chains.y_feed),
+                "compensator: share of a difference fed to the next lag",
+            );
         }
         if n % 2 == 0 || n == order {
             real(&format!("DC{n}"), value(&chains.y_dc), "compensator: static gain of a section");
@@ -245,9 +264,10 @@ fn compensator(b: &mut Builder, chains: &Chains) {
 }
 
 fn state(b: &mut Builder, plan: &Plan) {
-    let mut real = |name: &str, comment: &str| b.declare(Role::State, Type::Real, name, Initial::Zero, comment);
+    let mut real =
+        |name: &str, comment: &str| b.declare(Role::State, Type::Real, name, Initial::Zero, comment);
     for (name, comment) in [
-        ("I", "integral term [u]"),
+        ("I_SUM", "integral term [u]"),
         ("W_R", "lag of the set-point [y]"),
         ("W_Y", "lag of the measurement [y]"),
         ("U", "last output [u]"),
@@ -286,7 +306,8 @@ fn state(b: &mut Builder, plan: &Plan) {
     b.declare(Role::State, Type::Count, "MODE_ASKED", hold.clone(), "last mode asked for");
     b.declare(Role::State, Type::Count, "MODE_LAST", hold, "last mode in force");
     b.declare(Role::State, Type::Count, "BAD_COUNT", Initial::Zero, "bad samples in a row");
-    let mut flag = |name: &str, comment: &str| b.declare(Role::State, Type::Flag, name, Initial::Zero, comment);
+    let mut flag =
+        |name: &str, comment: &str| b.declare(Role::State, Type::Flag, name, Initial::Zero, comment);
     flag("IN_FALLBACK", "the fallback is in force");
     flag("AWAKE", "a sample was taken");
     flag("STARTED", "a good sample was taken");
@@ -294,12 +315,8 @@ fn state(b: &mut Builder, plan: &Plan) {
         flag(alarm.active, alarm.what);
     }
     if let Some(tuning) = &plan.tuning {
-        let values = [
-            ("KP", Some(tuning.kp)),
-            ("TN", tuning.tn),
-            ("TV", Some(tuning.tv)),
-            ("TF", Some(tuning.tf)),
-        ];
+        let values =
+            [("KP", Some(tuning.kp)), ("TN", tuning.tn), ("TV", Some(tuning.tv)), ("TF", Some(tuning.tf))];
         for (name, value) in values {
             if let Some(value) = value {
                 let name = format!("{name}_TAKEN");
@@ -320,7 +337,10 @@ fn scratch(b: &mut Builder, plan: &Plan) {
     of(Type::Real, &["SUM", "SUM_C", "V_BEGIN", "I_BEGIN", "INC_BEGIN", "PREVIEW", "CORRECTION", "Y_SEEN"]);
     of(Type::Real, &["INC_ASKED", "INC_ALLOWED"]);
     of(Type::Flag, &["USABLE", "RESETTLE", "HOLDING", "AWAITING", "GOOD", "SP_FINITE", "FF_FINITE"]);
-    of(Type::Flag, &["MAN_FINITE", "TRK_FINITE", "TARGET_GIVEN", "RATE_HELD", "HELD_NOW", "CLOSED", "BEGINS"]);
+    of(
+        Type::Flag,
+        &["MAN_FINITE", "TRK_FINITE", "TARGET_GIVEN", "RATE_HELD", "HELD_NOW", "CLOSED", "BEGINS"],
+    );
     of(Type::Count, &["MODE_DUE", "MODE_NOW", "MODE_WAS"]);
     if !plan.alarms().is_empty() {
         of(Type::Real, &["RELEASE"]);

@@ -57,7 +57,7 @@ pub(super) fn unwind(b: &mut Builder, plan: &Plan, to: &str, applied: &str) {
 /// Everything at rest at `r` and `y` with the output `u`.
 pub(super) fn settle(b: &mut Builder, r: &str, y: &str, u: &str) {
     b.note("PID at rest: I = u - (P_R*r - P_Y*y)");
-    restart(b, "I", "I_C", x(u) - (x("P_R") * x(r) - x("P_Y") * x(y)));
+    restart(b, "I_SUM", "I_SUM_C", x(u) - (x("P_R") * x(r) - x("P_Y") * x(y)));
     restart(b, "W_R", "W_R_C", x(r));
     restart(b, "W_Y", "W_Y_C", x(y));
     b.set("R_LAST", x(r));
@@ -67,8 +67,8 @@ pub(super) fn settle(b: &mut Builder, r: &str, y: &str, u: &str) {
 
 /// Keeps the integral term where nothing can overflow.
 pub(super) fn bound(b: &mut Builder) {
-    b.when(x("I").at_least(x("I_MIN")).and(x("I").at_most(x("I_MAX"))).opposite(), |b| {
-        clamp(b, "ACC_S", "I", "I_MIN", "I_MAX");
-        restart(b, "I", "I_C", x("ACC_S"));
+    b.when(x("I_SUM").at_least(x("I_MIN")).and(x("I_SUM").at_most(x("I_MAX"))).opposite(), |b| {
+        clamp(b, "ACC_S", "I_SUM", "I_MIN", "I_MAX");
+        restart(b, "I_SUM", "I_SUM_C", x("ACC_S"));
     });
 }

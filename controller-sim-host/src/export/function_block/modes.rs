@@ -73,10 +73,10 @@ pub(super) fn use_compensator(b: &mut Builder, plan: &Plan) {
     }
     b.note("compensator in or out of the sum: the integral term takes the difference");
     b.when(x("COMPENSATING").and(x("COMP_ON").opposite()), |b| {
-        super::parts::add(b, "I", "I_C", x("UF_NEW"));
+        super::parts::add(b, "I_SUM", "I_SUM_C", x("UF_NEW"));
     });
     b.when(x("COMP_ON").and(x("COMPENSATING").opposite()), |b| {
-        super::parts::add(b, "I", "I_C", -x("UF_NEW"));
+        super::parts::add(b, "I_SUM", "I_SUM_C", -x("UF_NEW"));
     });
     b.set("COMPENSATING", x("COMP_ON"));
     b.either(x("COMP_ON"), |b| b.set("U_F", x("UF_NEW")), |b| b.set("U_F", x("ZERO")));
@@ -115,7 +115,7 @@ pub(super) fn act(b: &mut Builder, plan: &Plan) {
     limit_bits(b);
     b.when(automatic("MODE_NOW").opposite(), |b| {
         b.note("the integral term follows, so that closing the loop moves nothing");
-        restart(b, "I", "I_C", x("U_LIMITED") - x("PD") - x("U_F") - x("OFFSET"));
+        restart(b, "I_SUM", "I_SUM_C", x("U_LIMITED") - x("PD") - x("U_F") - x("OFFSET"));
         b.set("INC", x("ZERO"));
     });
     b.set("MODE_LAST", x("MODE_NOW"));
@@ -147,7 +147,7 @@ fn begin(b: &mut Builder, plan: &Plan) {
                 law::allowed(b, "INC_BEGIN", "INC_ASKED");
                 law::preview(b, "PREVIEW", "SUM", "Y_SEEN");
                 law::unwind(b, plan, "CORRECTION", "APPLIED");
-                b.set("I_BEGIN", x("I") + x("INC_BEGIN") + x("CORRECTION"));
+                b.set("I_BEGIN", x("I_SUM") + x("INC_BEGIN") + x("CORRECTION"));
                 b.set("V_BEGIN", x("I_BEGIN") + x("PREVIEW") + x("OFFSET") + x("U_F"));
                 b.set("BEGINS", Expression::Flag(true));
             });
@@ -200,17 +200,17 @@ fn close(b: &mut Builder, plan: &Plan) {
     b.either(
         x("BEGINS"),
         |b| {
-            restart(b, "I", "I_C", x("V_BEGIN") - x("PD") - x("U_F") - x("OFFSET"));
+            restart(b, "I_SUM", "I_SUM_C", x("V_BEGIN") - x("PD") - x("U_F") - x("OFFSET"));
             b.set("INC", x("INC_BEGIN"));
         },
         |b| {
             law::unwind(b, plan, "CORRECTION", "APPLIED");
-            super::parts::add(b, "I", "I_C", x("CORRECTION"));
+            super::parts::add(b, "I_SUM", "I_SUM_C", x("CORRECTION"));
             b.set("INC", x("INC_ALLOWED"));
-            super::parts::add(b, "I", "I_C", x("INC_ALLOWED"));
+            super::parts::add(b, "I_SUM", "I_SUM_C", x("INC_ALLOWED"));
         },
     );
     law::bound(b);
     b.note("v = I + pd + offset + u_f");
-    b.set("V", x("I") + x("PD") + x("OFFSET") + x("U_F"));
+    b.set("V", x("I_SUM") + x("PD") + x("OFFSET") + x("U_F"));
 }

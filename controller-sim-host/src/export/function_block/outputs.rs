@@ -26,8 +26,22 @@ pub(super) const ALARMS: [Alarm; 5] = [
         what: "PV very high",
         low: false,
     },
-    Alarm { active: "ALM_HI", bit: "ST_ALARM_HI", level: "HI", clears: "HI_CLEAR", what: "PV high", low: false },
-    Alarm { active: "ALM_LO", bit: "ST_ALARM_LO", level: "LO", clears: "LO_CLEAR", what: "PV low", low: true },
+    Alarm {
+        active: "ALM_HI",
+        bit: "ST_ALARM_HI",
+        level: "HI",
+        clears: "HI_CLEAR",
+        what: "PV high",
+        low: false,
+    },
+    Alarm {
+        active: "ALM_LO",
+        bit: "ST_ALARM_LO",
+        level: "LO",
+        clears: "LO_CLEAR",
+        what: "PV low",
+        low: true,
+    },
     Alarm {
         active: "ALM_LO_LO",
         bit: "ST_ALARM_LO_LO",
@@ -81,7 +95,7 @@ pub(super) fn write(b: &mut Builder, plan: &Plan) {
     b.note("outputs");
     b.set("OP", x("U"));
     b.set("OP_RAW", x("V"));
-    b.set("I_TERM", x("I"));
+    b.set("I_TERM", x("I_SUM"));
     b.set("PD_TERM", x("PD"));
     if plan.compensator.is_some() {
         b.set("COMP_OUT", x("UF_NEW"));

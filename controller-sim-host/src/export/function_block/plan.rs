@@ -4,7 +4,8 @@ use super::super::Export;
 use super::outputs::{ALARMS, Alarm};
 use crate::simulate::{AnyLaw, Precision};
 use controller_core::{
-    Action, AntiWindupConfig, Compensate, ControllerConfig, ControllerNumbers, IntegralRule, PidCoefficients, Real,
+    Action, AntiWindupConfig, Compensate, ControllerConfig, ControllerNumbers, IntegralRule, PidCoefficients,
+    Real,
 };
 
 /// Everything that is written into the block.

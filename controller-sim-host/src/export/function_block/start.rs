@@ -43,7 +43,7 @@ pub(super) fn settle(b: &mut Builder, plan: &Plan) {
     }
     deadband(b, "Y_SEEN", "SPW", "Y");
     law::settle(b, "SPW", "Y_SEEN", "APPLIED");
-    b.set("PD", x("APPLIED") - x("I"));
+    b.set("PD", x("APPLIED") - x("I_SUM"));
     restart(b, "U", "U_C", x("APPLIED"));
     b.set("V", x("APPLIED"));
     b.set("U_F", x("ZERO"));

@@ -10,17 +10,16 @@ pub(super) fn retune(b: &mut Builder, plan: &Plan) {
     let Some(tuning) = &plan.tuning else { return };
     b.note("tuning on site: values that cannot be used are refused, the old ones stay");
     let inputs = tuning.inputs();
-    let mut ok = finite("KP");
+    b.set("PAR_OK", finite("KP"));
     for name in &inputs[1..] {
-        ok = ok.and(finite(name));
+        refuse(b, finite(name).opposite());
     }
-    b.set("PAR_OK", ok);
     b.when(x("PAR_OK"), |b| {
-        let mut same = x("KP").is(x("KP_TAKEN"));
-        for name in &inputs[1..] {
-            same = same.and(x(name).is(x(&format!("{name}_TAKEN"))));
+        b.set("PAR_CHANGED", Expression::Flag(false));
+        for name in &inputs {
+            let same = x(name).is(x(&format!("{name}_TAKEN")));
+            b.when(same.opposite(), |b| b.set("PAR_CHANGED", Expression::Flag(true)));
         }
-        b.set("PAR_CHANGED", same.opposite());
         b.when(x("PAR_CHANGED"), |b| {
             coefficients(b, plan, tuning);
             b.when(x("PAR_OK"), |b| take(b, plan, tuning));
@@ -166,10 +165,7 @@ fn overflow(b: &mut Builder) {
     }
     b.set("ROUNDED", x("N_KI_NOW") + x("N_KI_BEFORE"));
     size(b, "L_SIZE", long("ROUNDED"));
-    b.set(
-        "L_VALUE",
-        x("L_P") + x("L_Q") + x("L_TWO") * (x("L_H") + x("L_G")) + x("L_TWO") * x("L_SIZE"),
-    );
+    b.set("L_VALUE", x("L_P") + x("L_Q") + x("L_TWO") * (x("L_H") + x("L_G")) + x("L_TWO") * x("L_SIZE"));
     b.set("L_VALUE", x("L_VALUE") * x("L_SIGNAL") + x("L_FROM_Y") + x("L_FROM_U") + x("L_OFFSET"));
     refuse(b, x("L_VALUE").at_most(x("L_VALUE_MAX")).opposite());
 }
@@ -198,7 +194,7 @@ fn take(b: &mut Builder, plan: &Plan, tuning: &Tuning) {
             b.when(x("COMPENSATING").opposite(), |b| b.set("JUMP", x("ZERO")));
         }
         b.set("U_F", x("U_F") + x("JUMP"));
-        add(b, "I", "I_C", (x("PREVIEW") - x("PREVIEW_NEW")) + (x("OWED") - x("JUMP")));
+        add(b, "I_SUM", "I_SUM_C", (x("PREVIEW") - x("PREVIEW_NEW")) + (x("OWED") - x("JUMP")));
         law::bound(b);
         b.set("INC", x("ZERO"));
     });
