@@ -9,7 +9,15 @@ mod bits;
 mod compiled;
 #[path = "export_st/drive.rs"]
 mod drive;
+#[path = "export_st/header.rs"]
+mod header;
 #[path = "export_st/loops.rs"]
 mod loops;
+#[path = "export_st/parsers.rs"]
+mod parsers;
 #[path = "export_st/print_c.rs"]
 mod print_c;
+#[path = "export_st/text.rs"]
+mod text;
+#[path = "export_st/trace.rs"]
+mod trace;

@@ -182,12 +182,24 @@ impl<T: Real> Driven<T> {
             }
         }
         if chance.one_in(25) {
-            i.r = T::from_f64(chance.pick(&[0.0, -0.0, 0.5, 1.0, 2.0, -1.5, 3.0, 1e30, f64::NAN, f64::INFINITY]));
+            i.r = T::from_f64(chance.pick(&[
+                0.0,
+                -0.0,
+                0.5,
+                1.0,
+                2.0,
+                -1.5,
+                3.0,
+                1e30,
+                f64::NAN,
+                f64::INFINITY,
+            ]));
             i.r_remote = T::from_f64(chance.pick(&[0.25, 1.0, -0.5, 7.0, f64::NAN]));
             i.offset = T::from_f64(chance.pick(&[0.0, 0.1, -0.1, -0.0, 9.0, 2e6, f64::NAN]));
             i.inhibit_up = chance.one_in(3);
             i.inhibit_down = chance.one_in(3);
-            i.manual = chance.pick(&[None, Some(0.3), Some(-0.4), Some(77.0), Some(f64::NAN)]).map(T::from_f64);
+            i.manual =
+                chance.pick(&[None, Some(0.3), Some(-0.4), Some(77.0), Some(f64::NAN)]).map(T::from_f64);
             i.track = T::from_f64(chance.pick(&[0.0, 0.7, -99.0, f64::INFINITY]));
         }
         if chance.one_in(35) {

@@ -8,6 +8,15 @@ use std::fmt::Write;
 
 /// The program. Records are doubles, in the order in which the block declares its inputs and outputs.
 pub(crate) fn program(block: &Block, precision: Precision) -> String {
+    source(block, precision, false)
+}
+
+/// The same program with every operation formed in double precision and rounded by its assignment.
+pub(crate) fn wide_program(block: &Block) -> String {
+    source(block, Precision::F32, true)
+}
+
+fn source(block: &Block, precision: Precision, wide: bool) -> String {
     let mut out = String::from("#include <stdint.h>\n#include <stdio.h>\n");
     let real = match precision {
         Precision::F32 => "float",
@@ -17,6 +26,7 @@ pub(crate) fn program(block: &Block, precision: Precision) -> String {
     for variable in &block.variables {
         declare(&mut out, variable);
     }
+    out += if wide { "#define OPERAND(x) ((double)(x))\n" } else { "#define OPERAND(x) (x)\n" };
     out += "static void step(void)\n{\n";
     all(&mut out, &block.body);
     out += "}\n";
@@ -31,7 +41,8 @@ pub(crate) fn program(block: &Block, precision: Precision) -> String {
     for (n, v) in named(Role::Output).enumerate() {
         let _ = writeln!(out, "        out[{n}] = (double){};", name(&v.name));
     }
-    let _ = writeln!(out, "        fwrite(out, sizeof(double), {outputs}, stdout);\n    }}\n    return 0;\n}}");
+    let _ =
+        writeln!(out, "        fwrite(out, sizeof(double), {outputs}, stdout);\n    }}\n    return 0;\n}}");
     out
 }
 
@@ -59,7 +70,6 @@ fn declare(out: &mut String, v: &Variable) {
         Initial::Count(n) => n.to_string(),
         Initial::Word(bits) => format!("{bits}u"),
         Initial::Flag(is) => i32::from(*is).to_string(),
-        other => panic!("{name}: {other:?}"),
     };
     let cells = v.cells.map_or(String::new(), |cells| format!("[{cells}]"));
     let initial = if v.cells.is_none() && initial == "{0}" { "0".to_owned() } else { initial };
@@ -120,6 +130,14 @@ fn expression(value: &Expression) -> String {
                 Operator::And => "&",
                 Operator::Or => "|",
             };
+            let real = matches!(
+                operator,
+                Operator::Subtract | Operator::Multiply | Operator::Divide | Operator::Add
+            );
+            let count = matches!(**b, Expression::Count(_));
+            if real && !count {
+                return format!("(OPERAND({}) {sign} OPERAND({}))", expression(a), expression(b));
+            }
             format!("({} {sign} {})", expression(a), expression(b))
         }
         Expression::Not(a) => format!("!({})", expression(a)),
