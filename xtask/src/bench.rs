@@ -10,6 +10,7 @@ mod design;
 use std::path::{Path, PathBuf};
 
 use crate::long_runs::LongRun;
+use crate::python;
 use crate::rungs;
 use crate::shell::{Cmd, Outcome, target_dir};
 use crate::usage::measured;
@@ -38,7 +39,7 @@ const TOLERANCE: f64 = 0.005;
 /// things.
 pub(crate) fn run(root: &Path) -> Outcome {
     let program = rungs::program(root)?;
-    let python = python(root)?;
+    let python = python::environment(root, "bench", REQUIREMENTS)?;
     let folder = target_dir(root).join("bench");
     let scenario = |name: &str, samples: u64| -> Outcome<PathBuf> {
         let path = folder.join(name);
@@ -151,30 +152,6 @@ fn total_iae(json: &str) -> Outcome<f64> {
     let compact: String = json.chars().filter(|c| !c.is_whitespace()).collect();
     let total = compact.split_once("\"total\":{").ok_or("no total in the program's JSON")?.1;
     field(total, "\"iae\":")
-}
-
-/// A Python with the pinned packages, in a folder of its own below the target folder.
-fn python(root: &Path) -> Outcome<PathBuf> {
-    let folder = target_dir(root).join("bench");
-    let environment = folder.join("python");
-    let python = environment.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    let wanted =
-        std::fs::read(root.join(REQUIREMENTS)).map_err(|e| format!("cannot read {REQUIREMENTS}: {e}"))?;
-    let stamp = environment.join("installed.txt");
-    if python.is_file() && std::fs::read(&stamp).is_ok_and(|installed| installed == wanted) {
-        return Ok(python);
-    }
-    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
-    Cmd::new("python3", root)
-        .args(["-m", "venv", "--clear"])
-        .arg(&environment)
-        .run()
-        .map_err(|e| format!("{e}\nthe benchmark needs Python 3.11 or later with venv; on Debian run: sudo apt-get install -y python3-venv"))?;
-    Cmd::new(&python, root)
-        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS])
-        .run()?;
-    std::fs::write(&stamp, wanted).map_err(|e| format!("cannot write {}: {e}", stamp.display()))?;
-    Ok(python)
 }
 
 #[cfg(test)]

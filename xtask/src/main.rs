@@ -9,6 +9,7 @@
 //! | [`browser`] | the browser, Node and packages that the checks of the report pages run with |
 //! | [`emulator`] | building images for boards, running them on emulated ones |
 //! | [`packages`] | packages of the system |
+//! | [`python`] | Python with pinned packages |
 //! | [`same_bits`], [`no_panic`], [`swap`] | rungs on and for microcontrollers |
 //! | [`ladder`] | running the rungs in order, timing them, the summary |
 //! | [`rungs`] | what each rung of the ladder does |
@@ -42,6 +43,7 @@ mod memory;
 mod no_panic;
 mod packages;
 mod pil;
+mod python;
 mod report;
 mod rungs;
 mod same_bits;
@@ -169,6 +171,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
             lacking.extend(emulator::ready(root));
             lacking.extend(capi::ready(root));
             lacking.extend(browser::ready(root)?.err());
+            lacking.extend(python::structured_text(root));
             if fuzz {
                 lacking.extend(setup::fuzzing(root).err());
             }
