@@ -22,6 +22,7 @@
 //! | `block` | the caller's memory: layout, checks, where the delay memory is |
 //! | `calls` | what each function does, for both number types |
 //! | [`exports`] | the functions themselves |
+//! | [`plc`] | the function block of IEC 61131-3 over them, with the header `include/ctl_fb.h` |
 #![no_std]
 
 mod block;
@@ -30,6 +31,7 @@ pub mod config;
 pub mod exports;
 pub mod fault;
 pub mod io;
+pub mod plc;
 mod snapshot;
 
 pub use block::{MAX_DELAY, Number};
@@ -37,6 +39,7 @@ pub use config::Config;
 pub use exports::*;
 pub use fault::{Error, Fault, Faults, MAX_FAULTS};
 pub use io::{Input, Output};
+pub use plc::exports::*;
 
 /// Version of the interface: of the structures, the codes and the functions of the header.
 pub const ABI_VERSION: u32 = 1;
