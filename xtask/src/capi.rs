@@ -15,6 +15,8 @@ const OBJECT: &str = "ctl.o";
 const PROFILE: &str = "embedded";
 
 const HEADER: &str = "controller-capi/include/ctl.h";
+/// The header of the function block.
+const BLOCK_HEADER: &str = "controller-capi/include/ctl_fb.h";
 const EXAMPLE: &str = "controller-capi/examples/heater.c";
 
 /// What a program calls at least.
@@ -25,8 +27,9 @@ const PAGE: &str = "controller-capi/SIZES.md";
 
 /// The packages of Debian with what the tests of the C interface need: a question to a program, and what its answer contains
 /// when it is there. A compiler that does not find a file gives its bare name back.
-const PACKAGES: [(&str, [&str; 2], &str); 7] = [
+const PACKAGES: [(&str, [&str; 2], &str); 8] = [
     ("gcc", ["gcc", "--version"], ""),
+    ("g++", ["g++", "--version"], ""),
     ("clang", ["clang", "--version"], ""),
     ("libclang-rt-dev", ["clang", "--print-file-name=libclang_rt.asan-x86_64.a"], "/"),
     ("valgrind", ["valgrind", "--version"], ""),
@@ -109,7 +112,8 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
         return Ok(if in_ci() { Done::Lacking(message) } else { Done::Skipped(message) });
     }
     let remark = run(root, Then::Check)?;
-    Cmd::cargo(root).args(["test", "-p", "controller-tests", "--test", "capi"]).run()?;
+    let tests = ["--test", "capi", "--test", "function_block"];
+    Cmd::cargo(root).args(["test", "-p", "controller-tests"]).args(tests).run()?;
     Ok(Done::Passed(remark))
 }
 
@@ -141,10 +145,10 @@ pub(crate) fn run(root: &Path, then: Then) -> Outcome<String> {
     Ok(format!("{} machines, {} functions, no other symbol", MACHINES.len(), functions.len()))
 }
 
-/// The functions that the header declares.
+/// The functions that the headers declare.
 fn functions(root: &Path) -> Outcome<Vec<String>> {
-    let text = std::fs::read_to_string(root.join(HEADER)).map_err(|e| format!("{HEADER}: {e}"))?;
-    Ok(declared(&text))
+    let read = |header| std::fs::read_to_string(root.join(header)).map_err(|e| format!("{header}: {e}"));
+    Ok([read(HEADER)?, read(BLOCK_HEADER)?].iter().flat_map(|text| declared(text)).collect())
 }
 
 fn declared(header: &str) -> Vec<String> {
@@ -184,7 +188,7 @@ impl Machine {
         expected.sort_unstable();
         if exported != expected {
             return Err(format!(
-                "{} exports {exported:?}, the header declares {expected:?}",
+                "{} exports {exported:?}, the headers declare {expected:?}",
                 object.display()
             ));
         }
