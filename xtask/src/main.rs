@@ -17,6 +17,7 @@
 //! | [`memory`] | the memory of long runs |
 //! | [`pil`] | controllers on emulated boards: the same bits, round trips a second |
 //! | [`capi`] | what a C program links: archive, object, symbols, sizes |
+//! | [`plc`] | the C interface in LinuxCNC's HAL, in Octave, in the examples |
 //! | [`mod@bench`] | the speed of the simulation and of the tuning rules, beside Python |
 //! | [`long_runs`] | scenarios of any length for these |
 //! | [`board_demo`] | the demo of the firmware, whose log is committed |
@@ -43,6 +44,7 @@ mod memory;
 mod no_panic;
 mod packages;
 mod pil;
+mod plc;
 mod python;
 mod report;
 mod rungs;
@@ -78,7 +80,10 @@ const COMMANDS: [Command; 9] = [
     Command {
         name: "setup",
         about: "add what the toolchain lacks, the emulator, C compilers, the browser",
-        options: &[("--fuzz", "cargo-fuzz as well (needs a C++ compiler)")],
+        options: &[
+            ("--fuzz", "cargo-fuzz as well (needs a C++ compiler)"),
+            ("--plc", "LinuxCNC and Octave as well (150 MB)"),
+        ],
     },
     Command {
         name: "test",
@@ -130,7 +135,7 @@ Exit codes: 0 all well, 1 something failed, 2 wrong command line.
 #[derive(Debug, PartialEq, Eq)]
 enum Request {
     Help,
-    Setup { fuzz: bool },
+    Setup { fuzz: bool, plc: bool },
     Test(ladder::Options),
     ListRungs,
     Soak { minutes: u64 },
@@ -166,7 +171,7 @@ fn perform(request: Request, root: &Path) -> Outcome {
             print!("{}", help());
             Ok(())
         }
-        Request::Setup { fuzz } => {
+        Request::Setup { fuzz, plc } => {
             let mut lacking = setup::toolchain(root)?;
             lacking.extend(emulator::ready(root));
             lacking.extend(capi::ready(root));
@@ -174,6 +179,9 @@ fn perform(request: Request, root: &Path) -> Outcome {
             lacking.extend(python::structured_text(root));
             if fuzz {
                 lacking.extend(setup::fuzzing(root).err());
+            }
+            if plc {
+                lacking.extend(plc::ready(root));
             }
             if !lacking.is_empty() {
                 return Err(format!("set-up is not complete\n{}", lacking.join("\n")));
@@ -243,11 +251,12 @@ fn parse(args: &[String]) -> Result<Request, String> {
     match command.as_str() {
         "help" | "--help" | "-h" => Ok(Request::Help),
         "setup" => {
-            let mut fuzz = false;
-            while let Some((option, _)) = rest.option(&["--fuzz"])? {
+            let (mut fuzz, mut plc) = (false, false);
+            while let Some((option, _)) = rest.option(&["--fuzz", "--plc"])? {
                 fuzz |= option == "--fuzz";
+                plc |= option == "--plc";
             }
-            Ok(Request::Setup { fuzz })
+            Ok(Request::Setup { fuzz, plc })
         }
         "test" => parse_test(&mut rest),
         "soak" => {
@@ -408,8 +417,9 @@ mod tests {
         assert_eq!(words(""), Ok(Request::Help));
         assert_eq!(words("--help"), Ok(Request::Help));
         assert_eq!(words("test -h"), Ok(Request::Help));
-        assert_eq!(words("setup"), Ok(Request::Setup { fuzz: false }));
-        assert_eq!(words("setup --fuzz"), Ok(Request::Setup { fuzz: true }));
+        assert_eq!(words("setup"), Ok(Request::Setup { fuzz: false, plc: false }));
+        assert_eq!(words("setup --fuzz"), Ok(Request::Setup { fuzz: true, plc: false }));
+        assert_eq!(words("setup --plc"), Ok(Request::Setup { fuzz: false, plc: true }));
         assert_eq!(words("soak"), Ok(Request::Soak { minutes: SOAK_MINUTES }));
         assert_eq!(words("soak --minutes 5"), Ok(Request::Soak { minutes: 5 }));
         assert_eq!(words("soak --minutes=0"), Ok(Request::Soak { minutes: 0 }));

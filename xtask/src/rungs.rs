@@ -11,6 +11,7 @@ use crate::ladder::{Done, Rung};
 use crate::manifest::Manifest;
 use crate::no_panic;
 use crate::pil;
+use crate::plc;
 use crate::report;
 use crate::same_bits;
 use crate::setup::{self, Part, Toolchain};
@@ -19,7 +20,7 @@ use crate::size;
 use crate::swap;
 
 /// All rungs, in order.
-pub(crate) const RUNGS: [Rung; 19] = [
+pub(crate) const RUNGS: [Rung; 22] = [
     Rung { name: "set-up", about: "the pinned toolchain has its components and targets", run: set_up },
     Rung { name: "format", about: "sources are formatted", run: format },
     Rung { name: "clippy", about: "no warning in any target of any crate", run: clippy },
@@ -60,6 +61,9 @@ pub(crate) const RUNGS: [Rung; 19] = [
     },
     Rung { name: "demo", about: "the program without arguments runs its scenario", run: demo },
     Rung { name: "pil", about: "the same bits on every emulated board", run: pil::rung },
+    Rung { name: "hal", about: "the component in LinuxCNC's HAL, at 1 kHz, as the reference", run: plc::hal },
+    Rung { name: "octave", about: "the C interface against filters that Octave makes", run: plc::octave },
+    Rung { name: "examples", about: "the commands of the C interface's examples", run: plc::examples },
     Rung { name: "report", about: "pages are accessible, offline, legible, small", run: report::rung },
     Rung { name: "fuzz", about: "a bounded run of every fuzz target", run: fuzz_rung },
     Rung { name: "hygiene", about: "files are small, well named and finished", run: hygiene },
