@@ -20,8 +20,8 @@ struct Tool {
 
 const LINUXCNC: Tool = Tool {
     name: "LinuxCNC",
-    packages: &["linuxcnc-uspace", "linuxcnc-uspace-dev"],
-    probes: &[&["halrun", "-h"], &["halcompile", "--help"]],
+    packages: &["linuxcnc-uspace", "linuxcnc-uspace-dev", "make"],
+    probes: &[&["halrun", "-h"], &["halcompile", "--help"], &["make", "--version"]],
 };
 
 const OCTAVE: Tool = Tool {
