@@ -28,7 +28,10 @@ pub(crate) fn board_of(elf: &[u8]) -> anyhow::Result<&'static Board> {
     );
     let [stack, reset] = first_words(vectors.data()?)?;
     // The first push is below it.
-    ensure!(board.ram.contains(stack.wrapping_sub(4)), "its stack begins at {stack:#010x}, outside the RAM of {name}");
+    ensure!(
+        board.ram.contains(stack.wrapping_sub(4)),
+        "its stack begins at {stack:#010x}, outside the RAM of {name}"
+    );
     ensure!(board.flash.contains(reset), "starts at {reset:#010x}, outside the flash of {name}");
     Ok(board)
 }
