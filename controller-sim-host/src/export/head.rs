@@ -28,7 +28,7 @@ pub(super) fn name(controller: &str) -> String {
 }
 
 /// What the file says of itself.
-pub(super) fn lines(export: &Export<'_>, origin: &str) -> Vec<String> {
+pub(super) fn lines(export: &Export<'_>, origin: &str, tunable: bool) -> Vec<String> {
     let real = match export.precision {
         Precision::F32 => "REAL",
         Precision::F64 => "LREAL",
@@ -59,12 +59,23 @@ pub(super) fn lines(export: &Export<'_>, origin: &str) -> Vec<String> {
             );
         }
     }
-    more("- no statement is fused with another or rearranged (no fast or relaxed floating-point option);");
+    more(
+        "- no statement is fused with another or rearranged: no fast or relaxed floating-point option; where the PLC",
+    );
+    more("  compiles by way of C with gcc, -ffp-contract=off;");
     more("- numbers below the normal range are kept, and comparisons with NaN are false.");
     more("Elsewhere the block does the same to rounding; a NaN or infinite input may then not be found.");
+    more("Start: an instance settles itself at its first good PV, at the output BKCAL_IN or OP_INITIAL.");
     more(
-        "An instance settles itself at its first good measurement. Parameters are declared with their units.",
+        "Bad PV (not finite, out of range, PV_QUALITY not 0 or 1): output and terms are held for HOLD_SAMPLES calls,",
     );
+    more("  then the fallback; the next good PV settles the block where it is. STATUS tells.");
+    more(match tunable {
+        true => {
+            "KP, TN, TV, TF may change at any time: taken at the next call without a bump, or refused (ST_PAR_REFUSED)."
+        }
+        false => "This loop has no KP, TN, TV to tune: export it again to change its parameters.",
+    });
     lines
 }
 

@@ -113,8 +113,8 @@ impl<'a> Export<'a> {
     /// # Errors
     /// A loop with an ADRC.
     pub fn block(&self, origin: &str) -> Result<Block, Refused> {
-        let (name, head) = (head::name(self.name()), head::lines(self, origin));
-        function_block::block(self, &name, head).ok_or(Refused::Adrc)
+        let head = |tunable| head::lines(self, origin, tunable);
+        function_block::block(self, &head::name(self.name()), head).ok_or(Refused::Adrc)
     }
 
     /// The controller's name.

@@ -30,7 +30,7 @@ pub(crate) fn compile(compiler: &str, name: &str, source: &str, options: &[&str]
     let program = folder().join(format!("{name}{}", options.concat()));
     std::fs::write(&file, source).expect("the source can be written");
     let output = Command::new(compiler)
-        .args(["-std=c11", "-Wall", "-Werror", "-ffp-contract=off"])
+        .args(["-std=c11", "-Wall", "-Werror", "-ffp-contract=off", "-Wno-parentheses-equality"])
         .args(options)
         .arg("-o")
         .args([&program, &file])

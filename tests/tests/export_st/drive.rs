@@ -175,10 +175,9 @@ impl<T: Real> Driven<T> {
         };
         // Bad for long, so that the fallback comes; also from the very beginning.
         if k < 5 || (k / 97) % 11 == 7 {
-            i.quality = if k % 3 == 0 { Quality::Bad } else { i.quality };
-            i.y = if k % 3 == 1 { T::from_f64(f64::NAN) } else { i.y };
-            if k % 3 == 2 {
-                i.quality = Quality::Bad;
+            match k % 3 {
+                1 => i.y = T::from_f64(f64::NAN),
+                _ => i.quality = Quality::Bad,
             }
         }
         if chance.one_in(25) {

@@ -16,8 +16,12 @@ use super::Export;
 use super::block::{Block, Builder, x};
 use plan::Plan;
 
-/// The block; `None` for an ADRC.
-pub(super) fn block(export: &Export<'_>, name: &str, head: Vec<String>) -> Option<Block> {
+/// The block; `None` for an ADRC. `head` gives its first lines for a loop that can be tuned on site or not.
+pub(super) fn block(
+    export: &Export<'_>,
+    name: &str,
+    head: impl FnOnce(bool) -> Vec<String>,
+) -> Option<Block> {
     let plan = Plan::new(export)?;
     let mut b = Builder::new();
     declare::all(&mut b, &plan);
@@ -30,7 +34,7 @@ pub(super) fn block(export: &Export<'_>, name: &str, head: Vec<String>) -> Optio
         |b| sample(b, &plan),
     );
     outputs::write(&mut b, &plan);
-    Some(b.finish(name, head))
+    Some(b.finish(name, head(plan.tuning.is_some())))
 }
 
 /// A sample of an instance that has, or gets, a measurement.
