@@ -14,6 +14,9 @@ const CONFIGURATION: u8 = 1;
 const START_OR_READY: u16 = 1 << 15;
 /// One conversion at a time; the comparator is off.
 const SINGLE_SHOT: u16 = 1 << 8 | 0b11;
+/// Polarity of the comparator, which is off: without effect, but the chip does not start with it. So no configuration that is
+/// sent here is the one of a chip that was reset.
+const NOT_RESET: u16 = 1 << 3;
 
 /// Which pins are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,6 +133,7 @@ impl Ads1115Config {
             | (self.gain as u16) << 9
             | (self.rate as u16) << 5
             | SINGLE_SHOT
+            | NOT_RESET
     }
 }
 

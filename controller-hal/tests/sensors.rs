@@ -122,8 +122,11 @@ fn a_measurement_that_is_no_number_is_a_bad_sample() {
 }
 
 const CHIP: u8 = 0x48;
-/// AIN1 against ground, 4.096 V, 860 per second: by the data sheet 1_101_001_1 111_000_11.
-const WORD: [u8; 2] = [0xD3, 0xE3];
+/// AIN1 against ground, 4.096 V, 860 per second: by the data sheet 1_101_001_1 111_0_1_0_11, the polarity of the comparator
+/// (which is off) being the mark of a chip that was configured.
+const WORD: [u8; 2] = [0xD3, 0xEB];
+/// What the chip has after power-up, by the data sheet.
+const POWER_UP: [u8; 2] = [0x85, 0x83];
 
 fn ads1115(bus: &mut I2c) -> Ads1115<&mut I2c, f32> {
     let config =
@@ -175,8 +178,8 @@ fn the_ads1115_collects_what_it_started_a_sample_before() {
 fn an_ads1115_that_lost_its_configuration_is_started_anew() {
     let mut bus = I2c::new(&[
         start(),
-        // what it has after power-up: 2.048 V, another pin
-        OnI2c::write_read(CHIP, vec![1], vec![0x85, 0x83]),
+        // 2.048 V, another pin
+        OnI2c::write_read(CHIP, vec![1], POWER_UP.to_vec()),
         start(),
         configuration(WORD[0]),
         conversion(8000),
@@ -187,6 +190,36 @@ fn an_ads1115_that_lost_its_configuration_is_started_anew() {
     assert_eq!(sensor.sample(), Err(Ads1115Error::Reset));
     assert_eq!(sensor.sample().map(|r| r.value), Ok(5.0));
     bus.done();
+}
+
+/// In every configuration, the one that the chip starts with among them.
+#[test]
+fn a_reset_of_an_ads1115_is_seen_in_every_configuration() {
+    use Gain::*;
+    use Inputs::*;
+    use Rate::*;
+    let inputs =
+        [Differential01, Differential03, Differential13, Differential23, Single0, Single1, Single2, Single3];
+    let gains = [V6_144, V4_096, V2_048, V1_024, V0_512, V0_256];
+    let rates = [R8, R16, R32, R64, R128, R250, R475, R860];
+    // The fields of the data sheet: MUX from bit 12 on, PGA from bit 9 on, DR from bit 5 on.
+    for (mux, inputs) in (0_u16..).zip(inputs) {
+        for (pga, gain) in (0_u16..).zip(gains) {
+            for (dr, rate) in (0_u16..).zip(rates) {
+                let word = (0x810B | mux << 12 | pga << 9 | dr << 5).to_be_bytes();
+                let start = || OnI2c::write(CHIP, vec![1, word[0], word[1]]);
+                let reads = |word: [u8; 2]| OnI2c::write_read(CHIP, vec![1], word.to_vec());
+                let mut bus =
+                    I2c::new(&[start(), reads(POWER_UP), start(), reads(word), conversion(8), start()]);
+                let config = Ads1115Config { inputs, gain, rate, ..Ads1115Config::default() };
+                let mut sensor = Ads1115::new(&mut bus, config, span((0, 16), (0.0, 16.0)));
+                assert_eq!(sensor.sample(), Err(Ads1115Error::NotReady));
+                assert_eq!(sensor.sample(), Err(Ads1115Error::Reset), "{config:?}");
+                assert_eq!(sensor.sample(), Ok(Reading { value: 8.0, quality: Quality::Good }));
+                bus.done();
+            }
+        }
+    }
 }
 
 #[test]
