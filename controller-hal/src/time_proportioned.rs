@@ -78,6 +78,8 @@ pub struct TimeProportioned<P, T> {
     applied: Option<T>,
     /// The pin's level; not known before it was set and after it failed.
     driven: Option<bool>,
+    /// The pin was not set when it last should have been.
+    failed: bool,
 }
 
 impl<P: OutputPin, T: Number> TimeProportioned<P, T> {
@@ -116,6 +118,7 @@ impl<P: OutputPin, T: Number> TimeProportioned<P, T> {
             on: 0,
             applied: None,
             driven: None,
+            failed: false,
         })
     }
 
@@ -146,10 +149,11 @@ impl<P: OutputPin, T: Number> TimeProportioned<P, T> {
         self.set(false)
     }
 
-    /// The output that the windows have on the average \[u\]; `None`: none was applied, or the pin failed.
+    /// The output that the windows have on the average \[u\]; `None`: none was applied, or the pin failed and has not been
+    /// set since.
     #[must_use]
     pub fn applied(&self) -> Option<T> {
-        self.applied.filter(|_| self.at == 0 || self.driven.is_some())
+        if self.failed { None } else { self.applied }
     }
 
     /// Gives the pin back.
@@ -181,9 +185,9 @@ impl<P: OutputPin, T: Number> TimeProportioned<P, T> {
 
     fn set(&mut self, level: bool) -> Result<(), P::Error> {
         if self.driven != Some(level) {
-            self.driven = None;
+            (self.driven, self.failed) = (None, true);
             self.pin.set_state(level.into())?;
-            self.driven = Some(level);
+            (self.driven, self.failed) = (Some(level), false);
         }
         Ok(())
     }

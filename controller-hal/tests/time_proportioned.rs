@@ -146,6 +146,69 @@ fn a_failed_pin_is_reported_and_set_again() {
     pin.done();
 }
 
+/// A pin that fails in some ticks, and then counts.
+struct Unsteady<'a> {
+    broken: &'a core::cell::Cell<bool>,
+}
+
+impl embedded_hal::digital::Error for Broken {
+    fn kind(&self) -> embedded_hal::digital::ErrorKind {
+        embedded_hal::digital::ErrorKind::Other
+    }
+}
+
+#[derive(Debug, PartialEq)]
+struct Broken;
+
+impl embedded_hal::digital::ErrorType for Unsteady<'_> {
+    type Error = Broken;
+}
+
+impl embedded_hal::digital::OutputPin for Unsteady<'_> {
+    fn set_low(&mut self) -> Result<(), Broken> {
+        if self.broken.get() { Err(Broken) } else { Ok(()) }
+    }
+    fn set_high(&mut self) -> Result<(), Broken> {
+        self.set_low()
+    }
+}
+
+/// The pin fails from any tick on, for any number of ticks, at any duty: as long as it should have been set and was not,
+/// nothing is known of it, and as soon as it is set, all is.
+#[test]
+fn a_pin_that_failed_is_not_known_at_any_place_of_the_window() {
+    let mut failures = [0; 4];
+    for duty in [0.25, 0.5, 0.75] {
+        for (from, ticks) in (0..12).flat_map(|from| (1..14).map(move |ticks| (from, ticks))) {
+            let broken = core::cell::Cell::new(false);
+            let mut switch =
+                TimeProportioned::<_, f32>::new(Unsteady { broken: &broken }, &config(4, 0, 0)).unwrap();
+            switch.apply(duty).unwrap();
+            assert_eq!(switch.applied(), Some(duty));
+            for k in 0..30_usize {
+                broken.set((from..from + ticks).contains(&k));
+                let known = match switch.tick() {
+                    Ok(_) => Some(duty),
+                    Err(Broken) => {
+                        failures[k % 4] += 1;
+                        None
+                    }
+                };
+                assert_eq!(switch.applied(), known, "duty {duty}, broken from {from} for {ticks}: tick {k}");
+                // What is asked of a pin that has failed is no news of the pin.
+                switch.apply(duty).unwrap();
+                assert_eq!(switch.applied(), known);
+            }
+            broken.set(true);
+            assert_eq!((switch.switch_off(), switch.applied()), (Err(Broken), None));
+            assert_eq!((switch.tick(), switch.applied()), (Err(Broken), None));
+            broken.set(false);
+            assert_eq!((switch.switch_off(), switch.applied()), (Ok(()), Some(0.0)));
+        }
+    }
+    assert!(failures.iter().all(|&count| count > 0), "{failures:?}");
+}
+
 #[test]
 fn what_is_no_number_goes_to_the_safe_output() {
     let safe = TimeProportionedConfig {
