@@ -48,9 +48,10 @@ impl Default for FlowConfig {
 /// Law: `q = flow * root(dp/pressure)`, `root(x) = sqrt(x)` from `linear_below` on and `x/sqrt(linear_below)` below, 0 below
 /// `cut_off`; limited at twice the full flow. The root is [`fast_sqrt`]: the flow's relative error is at most 5e-6 for it
 /// and 3e-7 for scaling, far below that of any pressure transmitter. It serves signals: no law is built with it.
-/// Cost: 16 operations, no division, 6 compares.
+/// Cost: 16 operations, no division, 8 compares.
 ///
-/// Quality: that of the pressure; [`Quality::Bad`] and a flow of 0 when it is not finite; at best [`Quality::Uncertain`] where
+/// Quality: that of the pressure; [`Quality::Bad`] and a flow of 0 when it is not finite (a value that means nothing: look at
+/// the quality); at best [`Quality::Uncertain`] where
 /// the flow is limited, or the pressure is negative and should not be.
 ///
 /// ```
@@ -106,7 +107,8 @@ impl SquareRootFlow {
     }
 
     /// As [`convert`](Self::convert) with another root of numbers from 1e-6 to 4, such as `libm::sqrtf`, which is exact and,
-    /// without a floating-point unit, cheaper; see [`fast_sqrt`]. The line below still ends at the approximate root.
+    /// without a floating-point unit, cheaper; see [`fast_sqrt`]. The line below still ends at the approximate root. What can
+    /// be no root of such a number, being not finite, below 0 or above 4, is a flow of 0 and [`Quality::Bad`].
     #[must_use]
     pub fn convert_with(&self, pressure: Reading<f32>, root: impl FnOnce(f32) -> f32) -> Reading<f32> {
         let x = pressure.value * self.per_pressure;
@@ -117,6 +119,9 @@ impl SquareRootFlow {
         let beyond = size > MOST;
         let size = if beyond { MOST } else { size };
         let root = if size < self.linear_below { size * self.slope } else { root(size) };
+        if !(0.0..=MOST).contains(&root) {
+            return Reading { value: 0.0, quality: Quality::Bad };
+        }
         let root = if root < self.cut_off { 0.0 } else { root };
         let (root, wrong) = match self.negative {
             NegativePressure::Mirror => (if x < 0.0 { -root } else { root }, false),

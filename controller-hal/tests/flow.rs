@@ -121,6 +121,22 @@ fn another_root_is_taken_where_there_is_one() {
 }
 
 #[test]
+fn what_is_no_root_is_no_flow() {
+    for negative in [NegativePressure::Zero, NegativePressure::Mirror] {
+        for cut_off in [0.0, 0.1] {
+            let config = FlowConfig { flow: 1e12, cut_off, negative, ..FlowConfig::default() };
+            let flow = SquareRootFlow::new(&config).unwrap();
+            for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.5, f32::MAX, 1e30] {
+                for pressure in [0.5, 4.0, 9.0, -0.5] {
+                    let found = flow.convert_with(good(pressure), |_| wrong);
+                    assert_eq!(found, Reading { value: 0.0, quality: Quality::Bad }, "{wrong} {pressure}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn quality_only_gets_worse() {
     let flow = SquareRootFlow::new(&FlowConfig::default()).unwrap();
     let of = |value, quality| flow.convert(Reading { value, quality });
