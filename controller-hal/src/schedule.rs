@@ -1,7 +1,8 @@
 //! Laws for several operating points.
 
 use crate::faults::{Faults, RANGE_LIMIT};
-use controller_core::{ConfigErrors, Instance, Law, Param, Real, Reason};
+use crate::sense::Reading;
+use controller_core::{ConfigErrors, Instance, Law, Param, Quality, Real, Reason};
 
 /// A law and where it belongs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,16 +18,18 @@ pub struct OperatingPoint<L> {
 ///
 /// All laws are built and checked before the first sample (a `Pid`, a `Controller`, an `Adrc`: any
 /// [`Law`]); a step builds none. The border between two neighbours is half way between them; the signal must pass it by half
-/// of the hysteresis before the law changes, and the new law adopts the state without a bump, within the bounds that its
+/// of the hysteresis before the law changes, and the new law adopts the state: a bumpless transfer, within the bounds that its
 /// `adopt` names. For a finer schedule take more points: they cost memory only.
 ///
 /// The signal may be approximate (`SquareRootFlow` of the feature `micromath`, a filtered measurement): it chooses, it is
-/// not calculated with. One that is not finite changes nothing. Cost: 2 compares a sample while nothing changes; a change
-/// copies a law and adopts, at most once a sample.
+/// not calculated with. It comes as a [`Reading`], because the value of a failed transmitter means nothing: a reading that is
+/// [`Quality::Bad`] or not finite leaves the law as it is; an uncertain one counts. Cost: 4 compares a sample while nothing
+/// changes; a change copies a law and adopts, at most once a sample.
 ///
 /// ```
 /// use controller_core::{Pid, PidConfig, PidInput, PidState};
-/// use controller_hal::{GainSchedule, OperatingPoint};
+/// use controller_core::Quality;
+/// use controller_hal::{GainSchedule, OperatingPoint, Reading};
 /// let law = |kp: f64| Pid::<f32>::new(&PidConfig { kp, ki: kp, ..PidConfig::default() }, 0.1).unwrap();
 /// // The plant's gain falls with the flow.
 /// let points = [10.0, 50.0, 100.0].map(|at| OperatingPoint { at, law: law(0.02 * at) });
@@ -36,10 +39,11 @@ pub struct OperatingPoint<L> {
 ///     law.settle(&mut state, input, 5.0);
 ///     state
 /// }).unwrap();
-/// assert_eq!((loops.step(33.0, &input).u(), loops.active()), (5.0, 0)); // the border is at 30, half of 8 around it
-/// assert_eq!((loops.step(35.0, &input).u(), loops.active()), (5.0, 1)); // no bump
-/// assert_eq!((loops.step(27.0, &input).u(), loops.active()), (5.0, 1));
-/// assert_eq!((loops.step(f32::NAN, &input).u(), loops.active()), (5.0, 1));
+/// let mut at = |reading| (loops.step(reading, &input).u(), loops.active());
+/// assert_eq!(at(Reading::good(33.0)), (5.0, 0)); // the border is at 30, half of 8 around it
+/// assert_eq!(at(Reading::good(35.0)), (5.0, 1)); // no bump
+/// assert_eq!(at(Reading::good(27.0)), (5.0, 1));
+/// assert_eq!(at(Reading { value: 0.0, quality: Quality::Bad }), (5.0, 1)); // a broken wire is not a flow of 0
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GainSchedule<L, S, T, const N: usize> {
@@ -54,7 +58,8 @@ pub struct GainSchedule<L, S, T, const N: usize> {
 
 impl<T: Real, S, L: Law<State = S> + Copy, const N: usize> GainSchedule<L, S, T, N> {
     /// A schedule over `points` in ascending order, with `hysteresis` in the unit of the signal. It begins with the law next
-    /// to `signal` and the state that `begin` makes for it, settled or zeroed.
+    /// to `signal` and the state that `begin` makes for it, settled or zeroed. Until the transmitter answers, `signal` is what
+    /// to assume of the plant: a value that is safe to start at, not that of a bad reading.
     ///
     /// # Errors
     /// No points, points that are not finite or not ascending; a hysteresis below 0, or as large as the distance of two
@@ -101,19 +106,21 @@ impl<T: Real, S, L: Law<State = S> + Copy, const N: usize> GainSchedule<L, S, T,
     }
 
     /// Chooses the law for `signal`, then one sample.
-    pub fn step(&mut self, signal: T, input: &L::Input) -> L::Output {
+    pub fn step(&mut self, signal: Reading<T>, input: &L::Input) -> L::Output {
         let _ = self.choose(signal);
         self.instance.step(input)
     }
 
-    /// Chooses the law for `signal`, and lets it adopt the state if it is another one; whether it is.
-    pub fn choose(&mut self, signal: T) -> bool {
+    /// Chooses the law for `signal`, and lets it adopt the state if it is another one; whether it is. A reading that is bad
+    /// or not finite chooses nothing.
+    pub fn choose(&mut self, signal: Reading<T>) -> bool {
         let mut to = self.active;
-        if signal.is_finite_number() {
-            while self.up.get(to).is_some_and(|&border| signal > border) {
+        let Reading { value, quality } = signal;
+        if quality != Quality::Bad && value.is_finite_number() {
+            while self.up.get(to).is_some_and(|&border| value > border) {
                 to += 1;
             }
-            while to > 0 && self.down.get(to - 1).is_some_and(|&border| signal < border) {
+            while to > 0 && self.down.get(to - 1).is_some_and(|&border| value < border) {
                 to -= 1;
             }
         }

@@ -12,6 +12,20 @@ pub struct Reading<T> {
     pub quality: Quality,
 }
 
+impl<T> Reading<T> {
+    /// A reading that is in order.
+    ///
+    /// ```
+    /// use controller_core::Quality;
+    /// use controller_hal::Reading;
+    /// assert_eq!(Reading::good(21.5), Reading { value: 21.5, quality: Quality::Good });
+    /// ```
+    #[must_use]
+    pub const fn good(value: T) -> Self {
+        Self { value, quality: Quality::Good }
+    }
+}
+
 impl<T: Real> Reading<T> {
     /// `input` with this reading as its measurement.
     ///

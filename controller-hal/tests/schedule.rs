@@ -4,7 +4,10 @@ use controller_core::{
     Controller, ControllerConfig, ControllerInput, LimitConfig, Mode, Param, Pid, PidConfig, PidInput,
     PidState, Quality,
 };
-use controller_hal::{FlowConfig, GainSchedule, OperatingPoint, Reading, SquareRootFlow};
+use controller_hal::{
+    CountSpan, FlowConfig, GainSchedule, Monitored, OperatingPoint, Reading, Sense, SpanConfig,
+    SquareRootFlow,
+};
 use proptest::prelude::*;
 
 fn pid(kp: f64) -> Pid<f64> {
@@ -41,7 +44,7 @@ fn the_law_changes_at_the_borders_with_hysteresis() {
     ];
     for (signal, active) in walk {
         let before = loops.active();
-        assert_eq!(loops.choose(signal), before != active, "{signal}");
+        assert_eq!(loops.choose(Reading::good(signal)), before != active, "{signal}");
         assert_eq!(loops.active(), active, "{signal}");
         assert_eq!(*loops.instance().law(), points([0.0, 10.0, 40.0])[active].law);
     }
@@ -60,7 +63,55 @@ fn it_begins_at_the_nearest_point() {
 fn a_signal_that_is_no_number_changes_nothing() {
     let mut loops = schedule([0.0, 10.0], 1.0, 10.0);
     for signal in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert!(!loops.choose(signal) && loops.active() == 1);
+        assert!(!loops.choose(Reading::good(signal)) && loops.active() == 1);
+    }
+}
+
+#[test]
+fn a_bad_reading_changes_nothing_whatever_its_value() {
+    let mut loops = schedule([0.0, 10.0, 20.0], 1.0, 10.0);
+    for value in [0.0, -1e9, 20.0, 1e9, f64::NAN] {
+        assert!(!loops.choose(Reading { value, quality: Quality::Bad }) && loops.active() == 1, "{value}");
+    }
+    // One that is in doubt is used, as by a loop.
+    assert!(loops.choose(Reading { value: 20.0, quality: Quality::Uncertain }) && loops.active() == 2);
+}
+
+/// A flow transmitter of 4 to 20 mA through every block on the way, each of which has its own idea of the value of a sample
+/// that failed: 0 of the root, the last one of the monitor, the line prolonged of the span.
+#[test]
+fn a_flow_transmitter_that_fails_leaves_the_law() {
+    struct Transmitter(Result<Reading<f32>, ()>);
+    impl Sense<f32> for Transmitter {
+        type Error = ();
+        fn sample(&mut self) -> Result<Reading<f32>, ()> {
+            self.0
+        }
+    }
+    // 200 counts per mA, 0 to 25 kPa, a flow of 0 to 100.
+    let span = CountSpan::<f32>::new(&SpanConfig::current_loop((0, 4000), (0.0, 25.0))).unwrap();
+    let flow =
+        SquareRootFlow::new(&FlowConfig { pressure: 25.0, flow: 100.0, ..FlowConfig::default() }).unwrap();
+    let mut transmitter = Monitored::new(Transmitter(Err(())));
+    let points = [10.0, 50.0, 100.0].map(|at| OperatingPoint { at, law: pid(at) });
+    let mut loops = GainSchedule::new(points, 8.0, 50.0_f32, |_| PidState::default()).unwrap();
+    let broken = [Err(()), Ok(span.reading(0)), Ok(span.reading(4300)), Ok(Reading::good(f32::NAN))];
+    // Before the first sample that answers, the law is the one it began with; then 50 and 90 % of the flow.
+    for (milliamperes, active) in [(None, 1), (Some(8.0), 1), (Some(16.96), 2)] {
+        if let Some(milliamperes) = milliamperes {
+            transmitter.sensor_mut().0 = Ok(span.reading((200.0_f32 * milliamperes) as i32));
+            let _ = loops.choose(flow.convert(transmitter.read()));
+        }
+        assert_eq!(loops.active(), active);
+        for sample in broken {
+            transmitter.sensor_mut().0 = sample;
+            let signal = flow.convert(transmitter.read());
+            assert!(!loops.choose(signal) && loops.active() == active, "{sample:?}");
+            // Straight from the span, without a monitor.
+            if let Ok(reading) = sample {
+                assert!(!loops.choose(flow.convert(reading)) && loops.active() == active, "{sample:?}");
+            }
+        }
     }
 }
 
@@ -71,7 +122,7 @@ fn one_point_is_a_plain_loop() {
     let law = points([3.0])[0].law;
     for (k, signal) in [0.0, 1e300, -1e300, 3.0].into_iter().enumerate() {
         let input = PidInput { r: 1.0, y: 0.1 * k as f64 };
-        assert_eq!(loops.step(signal, &input), law.step(&mut state, input));
+        assert_eq!(loops.step(Reading::good(signal), &input), law.step(&mut state, input));
     }
 }
 
@@ -96,7 +147,7 @@ fn tables_that_are_none_are_refused() {
 /// A whole loop over a plant whose gain depends on the flow, scheduled by the flow that micromath's root gives: each change
 /// of the law moves the output by no more than `adopt` promises, here nothing but the integral's new increment.
 #[test]
-fn a_scheduled_loop_changes_without_a_bump() {
+fn a_scheduled_loop_changes_its_law_bumplessly() {
     let (ts, span) = (0.1, FlowConfig { pressure: 25.0, flow: 100.0, ..FlowConfig::default() });
     let flow = SquareRootFlow::new(&span).unwrap();
     let ki = |at: f64| 0.02 * at;
@@ -121,7 +172,7 @@ fn a_scheduled_loop_changes_without_a_bump() {
         let signal = flow.convert(Reading { value: dp, quality: Quality::Good });
         let input = ControllerInput { r: 60.0, y, mode: Mode::Auto, ..ControllerInput::default() };
         let before = loops.active();
-        let output = loops.step(signal.value, &input);
+        let output = loops.step(signal, &input);
         if loops.active() != before {
             changes.push((k, signal.value));
             // ki*ts*|e| of the new law, and rounding.
@@ -155,7 +206,7 @@ proptest! {
         };
         let mut loops = GainSchedule::new(points(at), hysteresis, 0.0, begin).unwrap();
         for signal in signals {
-            let out = loops.step(signal, &input);
+            let out = loops.step(Reading::good(signal), &input);
             prop_assert!((out.u() - 7.0).abs() < 1e-12);
             let i = loops.active();
             let border = |a: usize| 0.5 * (at[a] + at[a + 1]);

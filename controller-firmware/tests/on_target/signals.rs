@@ -10,7 +10,7 @@ pub(crate) const TESTS: &[(&str, fn())] = &[
     ("the root is as good as stated", root),
     ("the root has the bits of the host", root_bits),
     ("the flow follows its law", flow),
-    ("a schedule changes its law without a bump", schedule),
+    ("a schedule changes its law bumplessly, and not by a failed signal", schedule),
     ("a relay is on for what is due", relay),
 ];
 
@@ -60,10 +60,18 @@ fn schedule() {
         state
     };
     let mut loops = GainSchedule::new(points, 8.0, 12.0_f32, begin).unwrap();
-    // Flows of 20, 40, 90, 27 and none that is known.
-    let walk = [(1.0, 0), (4.0, 1), (20.25, 2), (1.8225, 1), (f32::NAN, 0)];
-    for (pressure, active) in walk {
-        let signal = flow.convert(Reading { value: pressure, quality: Quality::Good }).value;
+    // Flows of 20, 40, 90; none that is known, which is not a flow of 0; 27; a transmitter that failed at 4 mA.
+    let (good, bad) = (Quality::Good, Quality::Bad);
+    let walk = [
+        (1.0, good, 0),
+        (4.0, good, 1),
+        (20.25, good, 2),
+        (f32::NAN, good, 2),
+        (1.8225, good, 1),
+        (0.0, bad, 1),
+    ];
+    for (pressure, quality, active) in walk {
+        let signal = flow.convert(Reading { value: pressure, quality });
         let u = loops.step(signal, &input).u();
         assert!((u - 5.0).abs() < 1e-5, "{u}");
         assert_eq!(loops.active(), active);
