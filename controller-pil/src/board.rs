@@ -2,7 +2,8 @@
 
 /// A board: where its memories are and what runs on it.
 ///
-/// Addresses and sizes are those of the emulated machines, which are smaller than the ones of some real boards.
+/// Addresses and sizes are those of the emulated machines, which are smaller than the ones of some real boards; only the
+/// microbit's RAM is set to another size than the emulator gives it by itself, 16 KiB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Board {
     /// The name of the machine that emulates it.
@@ -55,7 +56,8 @@ pub const BOARDS: [Board; 5] = [
         clock: 25_000_000,
         emulator: &[],
     },
-    // The largest of the nRF51822: checking a configuration, with all faults at once, takes more stack than 16 KiB leave.
+    // The RAM of the largest nRF51822. One loop with an estimator runs in the 16 KiB of the others (a check links the guide's
+    // for that), the demo does not: two loops, a simulated plant for each, and a law that is built while they run.
     Board {
         name: "microbit",
         core: "Cortex-M0",
