@@ -1,4 +1,4 @@
-//! A law that is replaced under a running interrupt: whole, without a bump.
+//! A law that is replaced under a running interrupt: whole, and bumpless.
 //!
 //! The control task takes new laws from a [`ParamCell`] and adopts them. What can go wrong is checked in every sample:
 //! the law must be one of those that were published, number by number; and in the first sample of a new law the output

@@ -5,7 +5,7 @@ use crate::number::Number;
 use controller_core::{ConfigErrors, Param};
 use core::fmt;
 
-/// Something that carries out an output. Over an analogue output, a pulse-width modulator, a relay.
+/// Something that carries out an output. Over a DAC, a PWM channel, a relay.
 ///
 /// ```
 /// use controller_hal::{Actuate, ActuateError};

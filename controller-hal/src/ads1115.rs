@@ -1,11 +1,11 @@
-//! A 16-bit analogue input on an I2C bus.
+//! A 16-bit ADC (analogue-to-digital converter) on an I2C bus.
 
 use crate::number::Number;
 use crate::sense::{Reading, Sense};
 use crate::span::CountSpan;
 use embedded_hal::i2c::I2c;
 
-/// Codes at which the converter ends.
+/// Codes at which the ADC ends.
 const ENDS: (i32, i32) = (-32768, 32767);
 /// Numbers of the registers.
 const CONVERSION: u8 = 0;
@@ -61,7 +61,7 @@ pub enum Gain {
 }
 
 impl Gain {
-    /// Counts at a voltage \[V\], to write a span with; beyond the full scale the converter never gets there.
+    /// Counts at a voltage \[V\], to write a span with; beyond the full scale the ADC never gets there.
     ///
     /// ```
     /// use controller_hal::Gain;
@@ -155,21 +155,21 @@ impl<E: core::fmt::Debug> core::fmt::Display for Ads1115Error<E> {
         match self {
             Self::Bus(error) => write!(f, "the bus failed: {error:?}"),
             Self::NotReady => f.write_str("no conversion is done"),
-            Self::Reset => f.write_str("the converter has lost its configuration"),
+            Self::Reset => f.write_str("the ADC has lost its configuration"),
         }
     }
 }
 
 impl<E: core::fmt::Debug> core::error::Error for Ads1115Error<E> {}
 
-/// The 16-bit converter ADS1115 (and, with its codes in the upper 12 bits, ADS1015) in single shots, without waiting.
+/// The 16-bit ADC ADS1115 (and, with its codes in the upper 12 bits, ADS1015) in single shots, without waiting.
 ///
 /// [`sample`](Sense::sample) takes the conversion that the call before has started, and starts the next: the measurement is
 /// one sampling period old, which belongs into the loop's `latency`. Who has a second timer calls [`start`](Self::start) a
 /// conversion time before the sample and [`collect`](Self::collect) in it. Bus traffic of a sample: 14 bytes, with their
 /// acknowledgements and repeated starts about 0.3 ms at 400 kHz.
 ///
-/// The ends of the converter are [`Uncertain`](controller_core::Quality) at best, a conversion that is missing is an error:
+/// The ends of the ADC are [`Uncertain`](controller_core::Quality) at best, a conversion that is missing is an error:
 /// through [`Monitored`](crate::Monitored) a bad sample.
 ///
 /// ```no_run
@@ -193,7 +193,7 @@ pub struct Ads1115<B, T> {
 }
 
 impl<B: I2c, T: Number> Ads1115<B, T> {
-    /// The converter on `bus`; sends nothing yet.
+    /// The ADC on `bus`; sends nothing yet.
     pub const fn new(bus: B, config: Ads1115Config, span: CountSpan<T>) -> Self {
         Self { bus, config, span, started: false }
     }

@@ -5,14 +5,14 @@
 //!
 //! | | made of | block |
 //! |---|---|---|
-//! | in | `SpiDevice` | [`Mcp3201`], [`Mcp3204`]: 12-bit converters |
-//! | in | `I2c` | [`Ads1115`]: 16-bit converter, single shots |
+//! | in | `SpiDevice` | [`Mcp3201`], [`Mcp3204`]: 12-bit ADCs |
+//! | in | `I2c` | [`Ads1115`]: 16-bit ADC, single shots |
 //! | in | any [`Sense`] | [`Monitored`]: failures become bad samples and are counted |
-//! | out | `SetDutyCycle` | [`Pwm`] |
-//! | out | `I2c` | [`Mcp4725`]: 12-bit converter |
+//! | out | `SetDutyCycle` | [`Pwm`]: a PWM channel |
+//! | out | `I2c` | [`Mcp4725`]: 12-bit DAC |
 //! | out | `OutputPin` | [`TimeProportioned`]: relays and heaters |
 //! | between | | [`CountSpan`], [`OutputSpan`]: counts to units and back |
-//! | between | | [`GainSchedule`]: laws for several operating points |
+//! | between | | [`GainSchedule`]: laws for several operating points, bumpless transfer between them |
 //! | between | feature `micromath` | `SquareRootFlow`: flow from a differential pressure |
 //!
 //! # What holds

@@ -1,4 +1,4 @@
-//! Analogue inputs on an SPI bus.
+//! ADCs (analogue-to-digital converters) on an SPI bus.
 
 use crate::number::Number;
 use crate::sense::{Reading, Sense};
@@ -8,7 +8,7 @@ use embedded_hal::spi::SpiDevice;
 /// First and last code.
 const ENDS: (i32, i32) = (0, 4095);
 
-/// Why a converter gave no measurement.
+/// Why an ADC gave no measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Mcp320xError<E> {
@@ -22,14 +22,14 @@ impl<E: core::fmt::Debug> core::fmt::Display for Mcp320xError<E> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Bus(error) => write!(f, "the bus failed: {error:?}"),
-            Self::NoAnswer => f.write_str("the converter does not answer"),
+            Self::NoAnswer => f.write_str("the ADC does not answer"),
         }
     }
 }
 
 impl<E: core::fmt::Debug> core::error::Error for Mcp320xError<E> {}
 
-/// The one-channel 12-bit converter MCP3201: two bytes a sample, mode 0 or 3.
+/// The one-channel 12-bit ADC MCP3201: two bytes a sample, mode 0 or 3.
 ///
 /// The first and the last code are [`Uncertain`](controller_core::Quality) at best: the voltage may lie beyond them.
 ///
@@ -49,7 +49,7 @@ pub struct Mcp3201<D, T> {
 }
 
 impl<D: SpiDevice, T: Number> Mcp3201<D, T> {
-    /// The converter behind `device`.
+    /// The ADC behind `device`.
     pub const fn new(device: D, span: CountSpan<T>) -> Self {
         Self { device, span }
     }
@@ -75,7 +75,7 @@ impl<D: SpiDevice, T: Number> Sense<T> for Mcp3201<D, T> {
     }
 }
 
-/// One single-ended channel of the 12-bit converters MCP3204 (4 channels) and MCP3208 (8): three bytes a sample, mode 0
+/// One single-ended channel of the 12-bit ADCs MCP3204 (4 channels) and MCP3208 (8): three bytes a sample, mode 0
 /// or 3. Several channels of one chip are several of these over a shared bus.
 ///
 /// Codes and usage as [`Mcp3201`].
@@ -87,7 +87,7 @@ pub struct Mcp3204<D, T> {
 }
 
 impl<D: SpiDevice, T: Number> Mcp3204<D, T> {
-    /// Channel 0 to 7 of the converter behind `device`; only the lowest three bits of `channel` count.
+    /// Channel 0 to 7 of the ADC behind `device`; only the lowest three bits of `channel` count.
     pub const fn new(device: D, channel: u8, span: CountSpan<T>) -> Self {
         Self { device, channel: channel & 7, span }
     }

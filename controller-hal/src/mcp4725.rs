@@ -1,11 +1,11 @@
-//! An analogue output on an I2C bus.
+//! A DAC (digital-to-analogue converter) on an I2C bus.
 
 use crate::actuate::{Actuate, ActuateError, OutputConfig, OutputSpan};
 use crate::number::Number;
 use controller_core::ConfigErrors;
 use embedded_hal::i2c::I2c;
 
-/// The 12-bit converter MCP4725 and those that take its fast write: `lo..=hi` \[u\] becomes the codes 0 to 4095, by the law
+/// The 12-bit DAC MCP4725 and those that take its fast write: `lo..=hi` \[u\] becomes the codes 0 to 4095, by the law
 /// of [`OutputSpan`].
 ///
 /// Two bytes a sample (at 400 kHz about 70 us with the address); the non-volatile memory is left alone. Beyond the ends
@@ -28,13 +28,13 @@ pub struct Mcp4725<B, T> {
 }
 
 impl<B, T> Mcp4725<B, T> {
-    /// The address of a converter whose pin A0 is low.
+    /// The address of a DAC whose pin A0 is low.
     pub const ADDRESS: u8 = 0x60;
     const FULL: u16 = 4095;
 }
 
 impl<B: I2c, T: Number> Mcp4725<B, T> {
-    /// The converter at `address`; writes nothing yet.
+    /// The DAC at `address`; writes nothing yet.
     ///
     /// # Errors
     /// As [`OutputSpan::new`].
@@ -42,7 +42,7 @@ impl<B: I2c, T: Number> Mcp4725<B, T> {
         Ok(Self { bus, address, span: OutputSpan::new(config)?, applied: None })
     }
 
-    /// What the converter gives \[u\]; `None`: nothing yet, or not known since a failure.
+    /// What the DAC gives \[u\]; `None`: nothing yet, or not known since a failure.
     #[must_use]
     pub fn applied(&self) -> Option<T> {
         self.applied

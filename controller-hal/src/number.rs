@@ -1,4 +1,4 @@
-//! Numbers of a loop and counts of a converter.
+//! Numbers of a loop and counts of an ADC or a DAC.
 
 use controller_core::Real;
 

@@ -1,4 +1,4 @@
-//! A pulse-width modulator.
+//! A PWM channel (pulse-width modulation).
 
 use crate::actuate::{Actuate, ActuateError, OutputConfig, OutputSpan};
 use crate::number::Number;
@@ -7,8 +7,8 @@ use embedded_hal::pwm::SetDutyCycle;
 
 /// An output as a duty: `lo..=hi` \[u\] becomes `0..=max_duty_cycle()`, by the law of [`OutputSpan`].
 ///
-/// Beyond the ends it saturates. An output that is not finite never becomes a duty: the modulator keeps the one it has or
-/// goes to a safe one ([`OnInvalid`](crate::OnInvalid)), and [`apply`](Actuate::apply) says so. A modulator that can reach a
+/// Beyond the ends it saturates. An output that is not finite never becomes a duty: the channel keeps the one it has or
+/// goes to a safe one ([`OnInvalid`](crate::OnInvalid)), and [`apply`](Actuate::apply) says so. A channel that can reach a
 /// duty of 0 only stays at `lo`.
 ///
 /// ```no_run
@@ -39,7 +39,7 @@ impl<P: SetDutyCycle, T: Number> Pwm<P, T> {
         Ok(Self { channel, span: OutputSpan::new(config)?, applied: None })
     }
 
-    /// What the modulator does \[u\]; `None`: nothing yet, or not known since a failure.
+    /// What the channel does \[u\]; `None`: nothing yet, or not known since a failure.
     #[must_use]
     pub fn applied(&self) -> Option<T> {
         self.applied

@@ -42,9 +42,9 @@ impl<T: Real> Reading<T> {
     }
 }
 
-/// Something that measures. (embedded-hal 1.0 has no trait for analogue inputs.)
+/// Something that measures. (embedded-hal 1.0 has no trait for ADCs.)
 ///
-/// An implementation for the converter in a microcontroller is a few lines:
+/// An implementation for the ADC in a microcontroller is a few lines:
 ///
 /// ```
 /// use controller_hal::{CountSpan, Reading, Sense, SpanConfig};

@@ -1,4 +1,4 @@
-//! Counts of a converter to engineering units.
+//! Counts of an ADC to engineering units.
 
 use crate::faults::Faults;
 use crate::number::Number;
@@ -54,7 +54,7 @@ impl SpanConfig {
     }
 }
 
-/// Scales the counts of a converter to units and judges them.
+/// Scales the counts of an ADC to units and judges them.
 ///
 /// Law: `y = lo + (n - n_lo)*(hi - lo)/(n_hi - n_lo)`, the gain rounded once; the error is at most
 /// `2*eps*(|lo| + |hi|)` within the span, none at `n_lo`. Cost: a conversion, 2 operations, 4 compares.
@@ -139,7 +139,7 @@ impl<T: Number> CountSpan<T> {
         Reading { value: self.units(counts), quality }
     }
 
-    /// As [`reading`](Self::reading) for a converter that ends at the codes `ends`: there the true value may lie beyond, so
+    /// As [`reading`](Self::reading) for an ADC that ends at the codes `ends`: there the true value may lie beyond, so
     /// that the reading is [`Quality::Uncertain`] at best.
     #[must_use]
     pub fn reading_between(&self, counts: i32, ends: (i32, i32)) -> Reading<T> {

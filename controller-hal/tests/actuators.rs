@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const RANGE: OutputConfig = OutputConfig { lo: -20.0, hi: 80.0, invalid: OnInvalid::Keep };
 
-/// What a modulator is asked in one sample.
+/// What a PWM channel is asked in one sample.
 fn duty(max: u16, duty: u16) -> [OnPwm; 2] {
     [OnPwm::max_duty_cycle(max), OnPwm::set_duty_cycle(duty)]
 }
@@ -69,7 +69,7 @@ fn an_actuator_goes_to_its_safe_output() {
 }
 
 #[test]
-fn a_failed_modulator_is_reported() {
+fn a_failed_channel_is_reported() {
     let failed = MockError::Io(std::io::ErrorKind::Other);
     let mut channel = PwmMock::new(&[
         OnPwm::max_duty_cycle(100),
@@ -84,7 +84,7 @@ fn a_failed_modulator_is_reported() {
 }
 
 #[test]
-fn a_modulator_without_levels_stays_at_the_lower_end() {
+fn a_channel_without_levels_stays_at_the_lower_end() {
     let mut channel = PwmMock::new(&duty(0, 0));
     let mut output = Pwm::<_, f32>::new(&mut channel, &RANGE).unwrap();
     assert_eq!(output.apply(80.0), Ok(-20.0));

@@ -32,7 +32,7 @@ fn the_mcp3201_reads_twelve_bits_between_undefined_ones() {
 }
 
 #[test]
-fn the_ends_of_a_converter_are_not_good() {
+fn the_ends_of_an_adc_are_not_good() {
     let cases = [(0x0000, Quality::Uncertain), (0x0002, Quality::Good), (0x1FFE, Quality::Uncertain)];
     for (word, quality) in cases {
         let word: u16 = word;

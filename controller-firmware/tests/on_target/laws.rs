@@ -7,7 +7,7 @@ use controller_core::{
 
 pub(crate) const TESTS: &[(&str, fn())] = &[
     ("a PID gives the bits of its equation", pid),
-    ("a law is adopted without a bump", adopted),
+    ("a law is adopted: the transfer is bumpless", adopted),
     ("a controller starts, saturates and says so", saturates),
     ("a bad sample holds, a long time without falls back", bad_samples),
     ("any bit pattern gives an output in range", total),
