@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use controller_pil::board::Board;
+use controller_pil::board::{BOARDS, Board, of_target};
 
-use crate::emulator::{self, REFERENCE};
+use crate::emulator::REFERENCE;
 use crate::ladder::Done;
 use crate::manifest::Manifest;
 use crate::rungs::CORE;
@@ -25,18 +25,15 @@ const SIGN: &str = "panic-never";
 /// What no symbol of the image may contain: ways to panic, and the formatting that comes with them.
 const WORDS: [&str; 2] = ["panic", "fmt"];
 
-/// The board without atomic compare-and-swap: what links for it needs none.
-const SMALLEST: &str = "microbit";
-
 /// The rung.
 pub(crate) fn rung(root: &Path) -> Outcome<Done> {
-    let boards = [REFERENCE, emulator::board(SMALLEST)?];
+    let boards = one_of_each_target();
     let targets: Vec<String> = boards.iter().map(|board| board.target.into()).collect();
     if let Some(message) = setup::lacking(root, Part::Target, &targets)? {
         return Ok(Done::Lacking(message));
     }
     let features = core_features(&Manifest::read(&root.join(CORE).join("Cargo.toml"))?);
-    for board in boards {
+    for &board in &boards {
         let image = linked(root, board, &features)?;
         without_symbols(root, &image)?;
     }
@@ -47,6 +44,11 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
     }
     let cores: Vec<&str> = boards.iter().map(|board| board.core).collect();
     Ok(Done::Passed(format!("links for {}, without alloc; its broken twin does not", cores.join(", "))))
+}
+
+/// The first board of each target. One has no atomic compare-and-swap: what links for it needs none.
+fn one_of_each_target() -> Vec<&'static Board> {
+    BOARDS.iter().filter(|&board| of_target(board.target) == Some(board)).collect()
 }
 
 /// Every feature of the core, as features of a package that depends on it.
@@ -124,6 +126,12 @@ mod tests {
         let names = "main\n_ZN4core9panicking9panic_fmt17h0\n_RNvNtCs0_4core3fmt5write\nReset\n";
         assert_eq!(faults(names).len(), 2);
         assert!(faults("main\nReset\n_defmt_timestamp\n").is_empty());
+    }
+
+    #[test]
+    fn every_target_has_its_image() {
+        let cores: Vec<&str> = one_of_each_target().iter().map(|board| board.core).collect();
+        assert_eq!(cores, ["Cortex-M4F", "Cortex-M0", "Cortex-M3", "Cortex-M33"]);
     }
 
     #[test]

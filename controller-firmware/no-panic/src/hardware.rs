@@ -111,6 +111,7 @@ pub(crate) fn keep_all<T: Number + Real>() {
     keep! {
         CountSpan::<T>::new => fn(&_) -> _,
         CountSpan::<T>::reading => fn(&_, _) -> _,
+        CountSpan::<T>::reading_between => fn(&_, _, _) -> _,
         OutputSpan::<T>::new => fn(&_) -> _,
         OutputSpan::<T>::level => fn(&_, _, _) -> _,
         OutputSpan::<T>::output => fn(&_, _, _) -> _,
@@ -140,6 +141,12 @@ pub(crate) fn keep_single() {
     keep! {
         SquareRootFlow::new => fn(&_) -> _,
         SquareRootFlow::convert => fn(&_, _) -> _,
+        flow_with => fn(&_, _, _) -> _,
         controller_hal::fast_sqrt => fn(_) -> _,
     }
+}
+
+/// With a root that nothing is known of.
+fn flow_with(flow: &SquareRootFlow, pressure: Reading<f32>, root: fn(f32) -> f32) -> Reading<f32> {
+    flow.convert_with(pressure, root)
 }

@@ -8,6 +8,8 @@ pub(crate) const CAPACITY: usize = 40;
 
 /// A disturbance estimator of a second-order model.
 pub(crate) type De<T> = Compensator<T, 2, 1, CAPACITY>;
+/// A disturbance estimator of a first-order model.
+pub(crate) type FirstOrderDe<T> = Compensator<T, 1, 2, CAPACITY>;
 /// A disturbance observer of a first-order model.
 pub(crate) type Dob<T> = Compensator<T, 1, 0, CAPACITY>;
 /// A disturbance observer of a third-order model.
@@ -36,11 +38,14 @@ pub(crate) fn keep_all<T: Real>() {
         Adrc::<T>::resolution => fn(&_, _) -> _,
         De::<T>::new => fn(&_, _) -> _,
         De::<T>::step => fn(&_, &mut _, _) -> _,
+        FirstOrderDe::<T>::new => fn(&_, _) -> _,
+        FirstOrderDe::<T>::step => fn(&_, &mut _, _) -> _,
         Dob::<T>::new => fn(&_, _) -> _,
         Dob::<T>::step => fn(&_, &mut _, _) -> _,
         ThirdOrder::<T>::new => fn(&_, _) -> _,
         ThirdOrder::<T>::step => fn(&_, &mut _, _) -> _,
         De::<T>::settled => fn(&_, _, _) -> _,
+        FirstOrderDe::<T>::settled => fn(&_, _, _) -> _,
         Dob::<T>::settled => fn(&_, _, _) -> _,
         Largest::<T>::step => fn(&_, &mut _, _) -> _,
         Any::<T>::new => fn(&_, _, _) -> _,
@@ -48,6 +53,7 @@ pub(crate) fn keep_all<T: Real>() {
         Any::<T>::fits => fn(&_, &_) -> _,
     }
     compensator::<T, De<T>>();
+    compensator::<T, FirstOrderDe<T>>();
     compensator::<T, Dob<T>>();
     compensator::<T, ThirdOrder<T>>();
     compensator::<T, Largest<T>>();

@@ -1,7 +1,7 @@
 //! The whole loop around each law.
 
 use crate::keep;
-use crate::laws::{Any, De, Dob, Largest, ThirdOrder};
+use crate::laws::{Any, De, Dob, FirstOrderDe, Largest, ThirdOrder};
 use controller_core::{Adrc, Compensate, Controller, NoCompensator, Pid, Real, Regulator};
 
 pub(crate) fn keep_all<T: Real>() {
@@ -16,6 +16,7 @@ pub(crate) fn keep_all<T: Real>() {
     whole::<T, NoCompensator, Pid<T>>();
     whole::<T, NoCompensator, Adrc<T>>();
     whole::<T, De<T>, Pid<T>>();
+    whole::<T, FirstOrderDe<T>, Pid<T>>();
     whole::<T, Dob<T>, Pid<T>>();
     whole::<T, ThirdOrder<T>, Pid<T>>();
     whole::<T, Largest<T>, Pid<T>>();
