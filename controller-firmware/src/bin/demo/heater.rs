@@ -1,4 +1,4 @@
-//! The fast loop: a plate with a converter on SPI and a heater on a pulse-width modulator, with a disturbance estimator.
+//! The fast loop: a plate with an ADC on SPI and a heater on a PWM channel, with a disturbance estimator.
 
 use crate::heater_law::{self, Law, State};
 use crate::rig::{PLATE_COUNTS_PER_DEGREE, Power, SpiBus};

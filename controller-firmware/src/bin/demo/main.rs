@@ -2,8 +2,8 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `heater.rs` | a fast loop: converter on SPI, pulse-width modulator, law with a disturbance estimator, parameters replaced while it runs |
-//! | `oven.rs` | a slow loop: converter on I2C, relay, recorder |
+//! | `heater.rs` | a fast loop: ADC on SPI, PWM channel, law with a disturbance estimator, parameters replaced while it runs |
+//! | `oven.rs` | a slow loop: ADC and DAC (for a recorder) on I2C, relay |
 //! | `run.rs` | start-up and interrupts |
 //! | `telemetry.rs` | what goes from the interrupt to the main context |
 //! | `watch.rs` | the main loop: logs, the operator, another tuning |

@@ -1,5 +1,6 @@
-//! The slow loop: an oven with a converter on I2C and a heater behind a relay, and a recorder on the same bus.
+//! The slow loop: an oven with an ADC on I2C and a heater behind a relay, and a DAC for a recorder on the same bus.
 
+use crate::heater_law;
 use crate::oven_law::{self, Law, State, TS};
 use crate::rig::{I2cBus, OVEN_VOLTS_PER_DEGREE, Relay};
 use crate::telemetry::{Device, Event, Loop, Reporter};
@@ -9,7 +10,7 @@ use controller_hal::{
     SpanConfig, TimeProportioned, TimeProportionedConfig,
 };
 use core::cell::{Cell, RefCell};
-use critical_section::{CriticalSection, Mutex};
+use critical_section::Mutex;
 
 /// The set-point \[degC\].
 pub(crate) static SETPOINT: Mutex<Cell<f32>> = Mutex::new(Cell::new(20.0));
@@ -17,11 +18,13 @@ pub(crate) static SETPOINT: Mutex<Cell<f32>> = Mutex::new(Cell::new(20.0));
 /// The relay has two masters: the timer interrupt, which ticks it, and the loop, which says how much.
 static RELAY: Mutex<RefCell<Option<TimeProportioned<Relay, f32>>>> = Mutex::new(RefCell::new(None));
 
-/// The relay's window \[ticks of 10 ms\]. Half of it is part of the loop's `latency`, a period of the converter is the rest.
+/// From one tick of the relay to the next \[s\]: the period of the timer, which is that of the fast loop.
+const TICK: f64 = heater_law::TS;
+/// The relay's window \[ticks\]. Half of it is part of the loop's `latency`, a period of the ADC is the rest.
 const WINDOW: u16 = 20;
 const _: () = assert!(
-    oven_law::LATENCY >= TS + 0.5 * 0.01 * WINDOW as f64 - 1e-9,
-    "the loop was designed for less latency than converter and relay have"
+    oven_law::LATENCY >= TS + 0.5 * TICK * WINDOW as f64 - 1e-9,
+    "the loop was designed for less latency than ADC and relay have"
 );
 
 /// The exported law; not inlined, for its stack.
@@ -54,13 +57,13 @@ impl Oven {
         };
         let relay = TimeProportioned::new(Relay, &relay)?;
         critical_section::with(|cs| RELAY.borrow_ref_mut(cs).replace(relay));
-        let mut converter = Ads1115::new(I2cBus, config, span);
+        let mut adc = Ads1115::new(I2cBus, config, span);
         // Every sample takes the conversion that the one before started. If nobody answers here, the first sample is bad.
-        let _ = converter.start();
+        let _ = adc.start();
         Ok(Self {
             law: *law,
             state: law.zeroed(),
-            sensor: Monitored::new(converter),
+            sensor: Monitored::new(adc),
             recorder: Mcp4725::new(I2cBus, Mcp4725::<(), f32>::ADDRESS, &recorded)?,
             reporter: Reporter::new(Loop::Oven, 10),
         })
@@ -88,13 +91,13 @@ impl Oven {
     }
 }
 
-/// Moves the relay; every 10 ms, from the timer interrupt.
+/// Moves the relay; every [`TICK`], from the timer interrupt.
 pub(crate) fn tick() {
     // A pin that fails is set again with the next tick; `applied` then says nothing.
     let _ = with_relay(TimeProportioned::tick);
 }
 
+/// Nothing if there is no relay yet, or somebody has it: in a critical section nobody can, and an interrupt must not panic.
 fn with_relay<R>(act: impl FnOnce(&mut TimeProportioned<Relay, f32>) -> R) -> Option<R> {
-    let act = |cs: CriticalSection<'_>| RELAY.borrow_ref_mut(cs).as_mut().map(act);
-    critical_section::with(act)
+    critical_section::with(|cs| RELAY.borrow(cs).try_borrow_mut().ok()?.as_mut().map(act))
 }

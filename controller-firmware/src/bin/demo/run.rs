@@ -55,16 +55,15 @@ fn main() -> ! {
 fn start() -> Result<(), ConfigErrors> {
     assemble(&heater::law()?, &oven::law()?)?;
     // The peripherals of the processor are all that the demo uses of the board.
-    if let Some(mut peripherals) = cortex_m::Peripherals::take() {
-        // SAFETY: no critical section here goes by priorities: it turns all interrupts off.
-        unsafe { peripherals.SCB.set_priority(SystemHandler::PendSV, u8::MAX) };
-        let mut timer = peripherals.SYST;
-        timer.set_clock_source(SystClkSource::Core);
-        timer.set_reload(CLOCKS - 1);
-        timer.clear_current();
-        timer.enable_counter();
-        timer.enable_interrupt();
-    }
+    let mut peripherals = cortex_m::Peripherals::take().expect("nobody else has taken them");
+    // SAFETY: no critical section here goes by priorities: it turns all interrupts off.
+    unsafe { peripherals.SCB.set_priority(SystemHandler::PendSV, u8::MAX) };
+    let mut timer = peripherals.SYST;
+    timer.set_clock_source(SystClkSource::Core);
+    timer.set_reload(CLOCKS - 1);
+    timer.clear_current();
+    timer.enable_counter();
+    timer.enable_interrupt();
     defmt::info!(
         "the heater's loop runs every {=u32} ms, the oven's every {=u32}",
         PERIOD_MS,
@@ -105,7 +104,7 @@ fn PendSV() {
 /// With the first interrupt the loops become its own: from then on nobody has to ask for them.
 #[inline(never)]
 fn fetch(own: &mut Option<Loops>) {
-    *own = critical_section::with(|cs| LOOPS.borrow_ref_mut(cs).take());
+    *own = critical_section::with(|cs| LOOPS.borrow(cs).try_borrow_mut().ok()?.take());
 }
 
 struct Loops {

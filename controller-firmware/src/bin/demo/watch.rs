@@ -43,7 +43,8 @@ struct Watch {
 struct Seen {
     mode: Option<Mode>,
     status: Status,
-    next_line: u32,
+    /// In which of the stretches of [`LINES`] periods the last line with numbers was.
+    line: Option<u32>,
 }
 
 /// Watches for ever.
@@ -117,8 +118,9 @@ impl Seen {
         if went != Status::NONE {
             defmt::info!("{}: sample {=u32}: no longer {}", which, k, went);
         }
-        if k >= self.next_line {
-            self.next_line = k - k % LINES + LINES;
+        let line = Some(k / LINES);
+        if self.line != line {
+            self.line = line;
             // In tenths: whole numbers need no formatting of floats on the host's side to be compared.
             let tenths = |x: f32| (10.0 * x + if x < 0.0 { -0.5 } else { 0.5 }) as i32;
             let (r, y, u, d) = (tenths(r), tenths(y), tenths(u), tenths(d_hat));

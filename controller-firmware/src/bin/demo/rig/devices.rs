@@ -5,15 +5,15 @@ use core::convert::Infallible;
 use core::sync::atomic::Ordering;
 use embedded_hal::{digital, i2c, pwm, spi};
 
-/// The bus of the plate's converter.
+/// The bus of the plate's ADC.
 pub(crate) struct SpiBus;
 
-/// The bus of the oven's converter and of the recorder. Both drivers have a handle of their own, as `RefCellDevice` of
+/// The bus of the oven's ADC and of the recorder's DAC. Both drivers have a handle of their own, as `RefCellDevice` of
 /// embedded-hal-bus gives them.
 #[derive(Clone, Copy)]
 pub(crate) struct I2cBus;
 
-/// The pulse-width modulator of the plate's heater.
+/// The PWM channel of the plate's heater.
 pub(crate) struct Power;
 
 /// The pin of the oven's relay.
@@ -57,9 +57,9 @@ impl i2c::ErrorType for I2cBus {
     type Error = Silent;
 }
 
-/// Addresses of the converter and of the recorder; registers of the converter.
-const CONVERTER: u8 = 0x48;
-const RECORDER: u8 = 0x60;
+/// Addresses of the ADC and of the DAC; a register of the ADC.
+const ADC: u8 = 0x48;
+const DAC: u8 = 0x60;
 const CONFIGURATION: u8 = 1;
 /// No conversion is going on.
 const READY: u16 = 1 << 15;
@@ -75,13 +75,13 @@ impl i2c::I2c for I2cBus {
         let mut register = 0;
         for operation in operations {
             match (address, operation) {
-                (CONVERTER, i2c::Operation::Write([number])) => register = *number,
-                (CONVERTER, i2c::Operation::Write([CONFIGURATION, high, low])) => with(|world| {
+                (ADC, i2c::Operation::Write([number])) => register = *number,
+                (ADC, i2c::Operation::Write([CONFIGURATION, high, low])) => with(|world| {
                     world.configuration = u16::from_be_bytes([*high, *low]) & !READY;
                     world.conversion = world.oven_code();
                     world.done = world.now + 1;
                 }),
-                (CONVERTER, i2c::Operation::Read(bytes)) => {
+                (ADC, i2c::Operation::Read(bytes)) => {
                     let value = with(|world| match register {
                         CONFIGURATION if world.now >= world.done => world.configuration | READY,
                         CONFIGURATION => world.configuration,
@@ -91,7 +91,7 @@ impl i2c::I2c for I2cBus {
                         *byte = value;
                     }
                 }
-                (RECORDER, i2c::Operation::Write([high, low])) => {
+                (DAC, i2c::Operation::Write([high, low])) => {
                     with(|world| world.recorded = u16::from_be_bytes([*high, *low]));
                 }
                 _ => return Err(Silent),

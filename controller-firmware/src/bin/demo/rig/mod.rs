@@ -1,4 +1,4 @@
-//! The plants and their converters, simulated: what stands here is on a real board the drivers of its own crate.
+//! The plants with their ADCs and the DAC, simulated: what stands here is on a real board the drivers of its own crate.
 //!
 //! Everything outside this folder is the same there, but for the calls of `pass_10_ms`, `off` and `recorded`.
 
@@ -12,16 +12,16 @@ use core::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 use critical_section::Mutex;
 use plant::Plant;
 
-/// Counts of the SPI converter per degree of the plate: 12 bits for 0 to 102.4 degC.
+/// Counts of the ADC on SPI per degree of the plate: 12 bits for 0 to 102.4 degC.
 pub(crate) const PLATE_COUNTS_PER_DEGREE: i32 = 40;
 /// What the oven's transmitter gives \[V/degC\].
 pub(crate) const OVEN_VOLTS_PER_DEGREE: f64 = 0.015;
 /// Temperature of the room \[degC\].
 pub(crate) const ROOM: f32 = 20.0;
-/// Full duty of the modulator.
+/// Full duty of the PWM channel.
 const FULL: u16 = 4000;
 
-/// The register of the modulator and that of the relay's pin: they can be written from anywhere, at any time.
+/// The register of the PWM channel and that of the relay's pin: they can be written from anywhere, at any time.
 static DUTY: AtomicU16 = AtomicU16::new(0);
 static RELAY: AtomicBool = AtomicBool::new(false);
 
@@ -33,12 +33,12 @@ struct World {
     plate: Plant<20>,
     /// `1.5*exp(-0.1*s)/((1 + 0.5*s)*(1 + 4*s))`, `demo/oven.toml`.
     oven: Plant<10>,
-    /// Registers of the I2C converter: the configuration, the result.
+    /// Registers of the ADC on I2C: the configuration, the result.
     configuration: u16,
     conversion: i16,
     /// Age at which its conversion is done.
     done: u32,
-    /// The recorder's input.
+    /// The code in the DAC, which is the recorder's input.
     recorded: u16,
     /// The I2C bus was held already.
     held: bool,
