@@ -7,7 +7,7 @@ use controller_pil::board::BOARDS;
 
 use crate::emulator::{self, REFERENCE};
 use crate::ladder::Done;
-use crate::shell::{Cmd, Outcome};
+use crate::shell::{Cmd, Outcome, target_dir};
 
 /// The folder in which a user types `cargo run`.
 const FOLDER: &str = "controller-firmware";
@@ -24,8 +24,20 @@ const LAWS: [(&str, &str); 2] = [("demo/loop.toml", "heater_law.rs"), ("demo/ove
 /// The image of the guide, what it prints at its end, and what of it the guide shows: whole files, or from a line on.
 const FIRST: &str = "first";
 const FIRST_ENDS: &str = "after 800 samples: 600 tenths of a degree\n";
-const SHOWN: [(&str, &str); 2] = [("control.rs", "use "), ("main.rs", "#[cortex_m_rt::entry]")];
+const SHOWN: [(&str, &str); 3] =
+    [("control.rs", "use "), ("fault.rs", "use "), ("main.rs", "#[cortex_m_rt::entry]")];
 const GUIDE: &str = "README.md";
+/// The words that make it fail, and the exit code that says that its heater was turned off.
+const FAILURES: [&str; 3] = ["panic", "fault", "interrupt"];
+const TURNED_OFF: i32 = 101;
+/// The chip that has room for it, and its RAM \[bytes\]: half of what the emulated board has.
+const SMALL: &str = "microbit";
+const SMALL_RAM: u32 = 16 << 10;
+
+/// How the build script is asked for a board.
+const BOARD: &str = "CONTROLLER_BOARD";
+/// How it is asked for less RAM.
+const RAM_SIZE: &str = "CONTROLLER_RAM_SIZE";
 
 /// The rung.
 pub(crate) fn rung(root: &Path) -> Outcome<Done> {
@@ -53,16 +65,73 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
         }
         same(&expected, &log).map_err(|e| format!("{} ({}): {e}", board.name, board.core))?;
     }
-    let image = emulator::image(root, REFERENCE, FIRST, &[])?;
-    let text = emulator::emulated(root, &image, &[], SECONDS).capture()?;
-    if text != FIRST_ENDS {
-        return Err(format!("the guide's loop ends with\n  {text}and should with\n  {FIRST_ENDS}"));
-    }
+    let first = first(root)?;
+    misnamed(root)?;
     Ok(Done::Passed(format!(
-        "{lines} lines on {} boards, as in {FOLDER}/{EXPECTED}; 10 s of the {} in {took:.2} s",
+        "{lines} lines on {} boards, as in {FOLDER}/{EXPECTED}; 10 s of the {} in {took:.2} s; {first}",
         BOARDS.len(),
         REFERENCE.core
     )))
+}
+
+/// Runs the guide's loop: on the reference board, to its end and into each of its failures, and on a small chip.
+fn first(root: &Path) -> Outcome<String> {
+    let image = emulator::image(root, REFERENCE, FIRST, &[])?;
+    stack(&emulator::emulated(root, &image, &[], SECONDS).capture()?)?;
+    for failure in FAILURES {
+        let (code, text) = emulator::emulated(root, &image, &[failure], SECONDS).ended()?;
+        if code != Some(TURNED_OFF) || !turned_off(&text) {
+            return Err(format!("{text}\nafter a {failure} the guide's loop ended with {code:?}, heater on"));
+        }
+    }
+    let small = emulator::board(SMALL)?;
+    let build = Cmd::cargo(root).args(["build", "-p", emulator::FIRMWARE, "--bin", FIRST]);
+    emulator::for_board(build, root, small).env(RAM_SIZE, &SMALL_RAM.to_string()).run()?;
+    let image = target_dir(root).join(small.target).join("release").join(FIRST);
+    let (used, size) = stack(&emulator::emulated(root, &image, &[], SECONDS).capture()?)?;
+    // What is no stack is static.
+    if !(SMALL_RAM / 2..=SMALL_RAM).contains(&size) {
+        return Err(format!("{} has a stack of {size} bytes: not linked for {SMALL_RAM}", image.display()));
+    }
+    Ok(format!(
+        "the guide's loop takes {used} bytes of stack in {} KiB of RAM ({}), its heater goes off after {} failures",
+        SMALL_RAM / 1024,
+        small.core,
+        FAILURES.len()
+    ))
+}
+
+/// Checks how the guide's loop ends; the bytes of stack that it used, and that it had.
+fn stack(text: &str) -> Outcome<(u32, u32)> {
+    let numbers = text
+        .strip_prefix(FIRST_ENDS)
+        .and_then(|rest| rest.strip_suffix(" bytes of stack\n"))
+        .and_then(|rest| rest.split_once(" of "));
+    match numbers.map(|(used, size)| (used.parse(), size.parse())) {
+        Some((Ok(used), Ok(size))) => Ok((used, size)),
+        _ => Err(format!(
+            "the guide's loop ends with\n  {text}and should with\n  {FIRST_ENDS}  .. of .. bytes of stack"
+        )),
+    }
+}
+
+/// Whether the guide's loop says that its heater was on, and is off.
+fn turned_off(text: &str) -> bool {
+    let duties = text.strip_prefix("the duty was ").and_then(|rest| rest.split_once(" and is "));
+    duties.is_some_and(|(was, is)| was.parse().is_ok_and(|was: u16| was > 0) && is == "0\n")
+}
+
+/// A board that there is not: told in a line that names those that there are, not by a panic of the build script.
+fn misnamed(root: &Path) -> Outcome {
+    let (built, text) = Cmd::cargo(root)
+        .env(BOARD, "no-such-board")
+        .args(["build", "-p", emulator::FIRMWARE, "--bin", FIRST, "--release", "--target", REFERENCE.target])
+        .attempt()?;
+    let told = text.lines().any(|line| line.starts_with("error: ") && line.contains(REFERENCE.name));
+    if built || !told || text.contains("panicked") {
+        return Err(format!("{text}\na board that there is not must be refused in one line"));
+    }
+    Ok(())
 }
 
 /// Checks that the laws in the demo are what is exported from its design files.
@@ -107,7 +176,8 @@ fn read(file: &Path) -> Outcome<String> {
     std::fs::read_to_string(file).map_err(|e| format!("cannot read {}: {e}", file.display()))
 }
 
-/// The log without the names of the functions that wrote it, which only an unoptimised build knows.
+/// The log without the names of the functions that wrote it, which only an image with full debug information has, as `cargo
+/// run` builds it.
 fn without_places(log: &str) -> String {
     let place = |line: &str| line.ends_with(')').then(|| line.rfind(" (demo::")).flatten();
     let cut = |line: &str| place(line).and_then(|at| line.get(..at)).unwrap_or(line).to_owned() + "\n";
@@ -140,6 +210,17 @@ mod tests {
         assert_eq!(same("a\nb\n", "a\nb\n"), Ok(2));
         assert!(same("a\nb\n", "a\nc\n").unwrap_err().contains("line 2"));
         assert!(same("a\nb\n", "a\n").unwrap_err().contains("1 lines, 2"));
+    }
+
+    #[test]
+    fn an_end_of_the_guides_loop_is_read_and_checked() {
+        assert_eq!(stack(&format!("{FIRST_ENDS}10 of 20 bytes of stack\n")), Ok((10, 20)));
+        assert!(stack("after 800 samples: 599 tenths of a degree\n10 of 20 bytes of stack\n").is_err());
+        assert!(stack(FIRST_ENDS).is_err());
+        assert!(turned_off("the duty was 334 and is 0\n"));
+        for text in ["the duty was 0 and is 0\n", "the duty was 334 and is 1\n", "", "error: stopped\n"] {
+            assert!(!turned_off(text), "{text}");
+        }
     }
 
     #[test]
