@@ -43,6 +43,7 @@ fn orphaned(root: &Path, image: &Path) -> Outcome<&'static str> {
     // A name that no other process has in its command line.
     let copy = image.with_file_name(format!("fail-orphan-{}", std::process::id()));
     std::fs::copy(image, &copy).map_err(|e| format!("cannot write {}: {e}", copy.display()))?;
+    Cmd::cargo(root).args(["build", "--quiet", "--package", "controller-emulate"]).run()?;
     let runner = target_dir(root).join("debug/controller-emulate");
     let mut command = Cmd::new(runner, root).env("EMULATE_SECONDS", "60").arg(&copy).arg("spin").command();
     let mut child =
