@@ -35,6 +35,10 @@ pub(crate) unsafe fn scan<T: Number>(
         let reports = &mut all.reports;
         (reports.error, reports.error_param, reports.error_reason) = (error as i32, param, reason);
         reports.status = status::NOT_RUNNING;
+        // Nobody controls: a loop above must not believe that its set-point acts.
+        reports.mode = 0;
+        (all.flags.in_auto, all.flags.in_cas) = (0, 0);
+        (all.flags.blocked_up, all.flags.blocked_dn) = (1, 1);
         all.flags.fault = 1;
     }
     // SAFETY: as above.
@@ -56,17 +60,27 @@ unsafe fn run<T: Number>(state: *mut c_void, size: usize, vars: &mut Vars<T>) ->
     let looped = Looped { memory: place.loop_memory::<T>(), size: place.loop_size };
     let parameters = vars.parameters();
     if !matches!(contents, Contents::Running) {
+        let mut first = parameters;
+        if let (Contents::Unknown, Some(op)) = (&contents, last_output(vars)) {
+            // A loop whose memory was lost begins where the actuator is.
+            first.settings.op_init = op;
+        }
         // SAFETY: the block of the loop is inside the caller's memory, and so is the instance.
         unsafe {
-            apply(&parameters, |config, faults| {
-                calls::init::<T>(looped.memory, looped.size, config, faults)
-            })?;
+            apply(&first, |config, faults| calls::init::<T>(looped.memory, looped.size, config, faults))?;
             place.write(Instance::new(parameters, matches!(contents, Contents::Unknown)));
         }
     }
     // SAFETY: an instance was found or written.
     let instance = unsafe { place.instance::<T>() };
     instance.notice(vars);
+    // A new divider counts at once: the old one may be a slip that would take hours to come round.
+    if !instance.is_due() && parameters.divider() != instance.parameters.divider() {
+        // SAFETY: the loop has been found or initialised.
+        if unsafe { instance.adopt(looped, parameters) } {
+            instance.ran = 0;
+        }
+    }
     if instance.is_due() {
         // SAFETY: the loop has been found or initialised.
         unsafe { instance.sample(looped, vars, parameters) }.map_err(unnamed)?;
@@ -74,6 +88,12 @@ unsafe fn run<T: Number>(state: *mut c_void, size: usize, vars: &mut Vars<T>) ->
     (vars.results, vars.reports, vars.flags) =
         (instance.given.results, instance.given.reports, instance.given.flags);
     Ok(())
+}
+
+/// The output that the variables still hold from a call before, if there was one.
+fn last_output<T: Number>(vars: &Vars<T>) -> Option<T> {
+    let op = vars.results.op;
+    (vars.reports.mode != 0 && op >= T::from_f64(-1e12) && op <= T::from_f64(1e12)).then_some(op)
 }
 
 /// Hands the configuration of these parameters to `take`.

@@ -131,6 +131,37 @@ fn memory_that_is_not_a_block_begins_anew_and_says_so() {
 }
 
 #[test]
+fn a_loop_whose_memory_is_lost_goes_on_from_its_output() {
+    let mut rig = pi::<f64>();
+    rig.vars.settings.op_rate_up = 1.0;
+    rig.vars.settings.op_rate_dn = 1.0;
+    let mut op = 0.0;
+    for _ in 0..300 {
+        op = rig.run(60.0, 50.0);
+    }
+    assert!(op > 40.0);
+    let aligned = rig.memory.as_ptr().align_offset(8);
+    rig.memory[aligned + 640] ^= 1;
+    let next = rig.run(60.0, 50.0);
+    assert!(rig.has(status::STATE_LOST));
+    let step = 1.0 * rig.vars.settings.ts;
+    assert!((next - op).abs() <= step + 1e-9, "{op} {next}");
+}
+
+#[test]
+fn without_a_loop_nobody_is_in_automatic() {
+    let mut rig = pi::<f64>();
+    rig.run(50.0, 50.0);
+    assert_eq!(rig.vars.flags.in_auto, 1);
+    rig.memory.fill(0x5A);
+    rig.vars.settings.tn = -1.0;
+    assert_ne!(rig.scan(), 0);
+    assert!(rig.has(status::NOT_RUNNING));
+    let flags = &rig.vars.flags;
+    assert_eq!((rig.vars.reports.mode, flags.in_auto, flags.blocked_up, flags.blocked_dn), (0, 0, 1, 1));
+}
+
+#[test]
 fn the_memory_of_one_type_is_not_that_of_the_other() {
     let mut single = pi::<f32>();
     single.run(50.0, 50.0);

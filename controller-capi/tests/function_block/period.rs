@@ -139,6 +139,18 @@ fn divides_the_scans() {
 }
 
 #[test]
+fn a_slip_in_the_divider_is_corrected_at_once() {
+    let mut rig = pi::<f32>();
+    rig.run(50.0, 50.0);
+    rig.vars.choices.scan_div = 65_535;
+    rig.run(50.0, 50.0);
+    rig.vars.choices.scan_div = 1;
+    rig.vars.commands.man = 1;
+    rig.vars.signals.op_man = 7.0;
+    assert_eq!(rig.run(50.0, 50.0), 7.0);
+}
+
+#[test]
 fn a_short_pulse_between_two_samples_is_not_lost() {
     let mut rig = pi::<f64>();
     rig.vars.choices.scan_div = 3;
