@@ -6,25 +6,36 @@ use crate::simulate::Precision;
 /// Longest name of a block: what the oldest programming systems take.
 const LONGEST: usize = 24;
 
-/// The name of the block: letters, digits and single underscores of the controller's name behind `FB_`.
+/// The name of the block: letters, digits and single underscores of the controller's name behind `FB_`. What does not fit, or
+/// has no such letter, leaves four hexadecimal digits of the whole name, so that two loops keep two names.
 pub(super) fn name(controller: &str) -> String {
-    let mut name = String::from("FB");
-    let mut gap = true;
-    for c in controller.chars() {
-        if !c.is_ascii_alphanumeric() {
-            gap = true;
-            continue;
-        }
-        if name.len() + 1 + usize::from(gap) > LONGEST {
-            break;
-        }
-        if gap {
-            name.push('_');
-        }
-        gap = false;
-        name.push(c.to_ascii_uppercase());
+    let separates = |c: char| matches!(c, ' ' | '-' | '_' | '+' | '.' | '/');
+    let words: Vec<String> = controller
+        .split(|c: char| !c.is_ascii_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .map(str::to_ascii_uppercase)
+        .collect();
+    let whole = format!("FB_{}", words.join("_"));
+    let lost = controller.chars().any(|c| !c.is_ascii_alphanumeric() && !separates(c));
+    if words.is_empty() {
+        return if controller.is_empty() {
+            "FB_LOOP".to_owned()
+        } else {
+            format!("FB_LOOP_{}", digits(controller))
+        };
     }
-    if name == "FB" { "FB_LOOP".to_owned() } else { name }
+    if !lost && whole.len() <= LONGEST {
+        return whole;
+    }
+    let room: String = whole.chars().take(LONGEST - 5).collect();
+    format!("{}_{}", room.trim_end_matches('_'), digits(controller))
+}
+
+/// Four digits that stand for a text: FNV-1a, folded.
+fn digits(text: &str) -> String {
+    let hash =
+        text.bytes().fold(0x811C_9DC5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
+    format!("{:04X}", (hash >> 16) ^ (hash & 0xFFFF))
 }
 
 /// What the file says of itself.

@@ -50,7 +50,7 @@ pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
         inputs.iter().map(|name| format!("        {name} := IN_{name}[SAMPLE]")).collect();
     out += &calls.join(",\n");
     out += "\n    );\n    SAME := TRUE;\n";
-    for name in ["OP", "OP_RAW", "SP_WORK", "STATUS"] {
+    for name in ["OP", "OP_UNLIM", "SP_WORK", "STATUS"] {
         let _ = writeln!(
             out,
             "    IF NOT (LAW.{name} = OUT_{name}[SAMPLE]) THEN\n        SAME := FALSE;\n    END_IF;"
@@ -166,7 +166,7 @@ fn record<T: Real>(export: &Export<'_>) -> Vec<Column> {
         flags("IN_INHIBIT_UP", &|i| i.inhibit_up),
         flags("IN_ACK", &|i| i.acknowledge),
         numbers("OUT_OP", &|(_, o)| o.u),
-        numbers("OUT_OP_RAW", &|(_, o)| o.v),
+        numbers("OUT_OP_UNLIM", &|(_, o)| o.v),
         numbers("OUT_SP_WORK", &|(_, o)| o.r),
         Column { name: "OUT_STATUS", kind: Type::Word, cells: status },
     ]

@@ -70,7 +70,7 @@ pub(crate) fn outputs<T: Real>(block: &Block, out: &ControllerOutput<T>, refused
     let flag = |is: bool| f64::from(u8::from(is));
     let value = |name: &str| match name {
         "OP" => out.u.to_f64(),
-        "OP_RAW" => out.v.to_f64(),
+        "OP_UNLIM" => out.v.to_f64(),
         "I_TERM" => out.i.to_f64(),
         "PD_TERM" => out.pd.to_f64(),
         "COMP_OUT" => out.u_f.to_f64(),
@@ -79,7 +79,7 @@ pub(crate) fn outputs<T: Real>(block: &Block, out: &ControllerOutput<T>, refused
         "BLOCKED_UP" => flag(out.blocked_up),
         "BLOCKED_DOWN" => flag(out.blocked_down),
         "MODE_ACT" => f64::from(out.mode as u8),
-        "STATUS" => f64::from(out.status.bits() | u32::from(refused) << 24),
+        "STATUS" => f64::from(out.status.bits() | u32::from(refused) << 26),
         other => panic!("the block has an output {other} that nobody knows"),
     };
     block.variables.iter().filter(|v| v.role == Role::Output).map(|v| value(&v.name)).collect()

@@ -96,9 +96,10 @@ fn names_come_from_the_controller_and_nothing_ends_a_comment() {
     for (name, block) in [
         ("DE-MOMI", "FB_DE_MOMI"),
         ("  Ofen 3 / Zone  2 ", "FB_OFEN_3_ZONE_2"),
-        ("*) x := 1; (* {pragma} \u{e9}", "FB_X_1_PRAGMA"),
-        ("\u{65e5}\u{672c}", "FB_LOOP"),
-        ("a name that is longer than any PLC would take", "FB_A_NAME_THAT_IS_LONGER"),
+        ("*) x := 1; (* {pragma} \u{e9}", "FB_X_1_PRAGMA_18F9"),
+        ("\u{65e5}\u{672c}", "FB_LOOP_7177"),
+        ("a name that is longer than any PLC would take", "FB_A_NAME_THAT_IS_L_2D1A"),
+        ("a name that is longer than any PLC would like", "FB_A_NAME_THAT_IS_L_E067"),
     ] {
         let spec = ControllerSpec { name: name.to_owned(), ..spec.clone() };
         let export = Export::new(&scenario, &spec, Precision::F32, None).expect("a loop");

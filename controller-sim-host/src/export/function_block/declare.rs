@@ -6,7 +6,7 @@ use super::tuning;
 use controller_core::{Mode, Quality, Status};
 
 /// Bit of a refused parameter: the core has no such bit, its laws cannot be built from one.
-const PAR_REFUSED: u32 = 1 << 24;
+const PAR_REFUSED: u32 = 1 << 26;
 
 /// The bits of the status word: name and number.
 const BITS: [(&str, Status); 20] = [
@@ -102,7 +102,7 @@ fn outputs(b: &mut Builder, plan: &Plan) {
     let mut real =
         |name: &str, comment: &str| b.declare(Role::Output, Type::Real, name, Initial::Zero, comment);
     real("OP", "output, limited [u]");
-    real("OP_RAW", "output before the limits [u]");
+    real("OP_UNLIM", "output before the limits: not for an actuator [u]");
     real("I_TERM", "integral term [u]");
     real("PD_TERM", "filtered proportional and derivative terms [u]");
     if plan.compensator.is_some() {
@@ -145,7 +145,7 @@ fn names(b: &mut Builder, plan: &Plan) {
         let what = format!("bit {}: {what}{unused}", bit.bits().trailing_zeros());
         b.declare(Role::Named, Type::Word, name, Initial::Word(bit.bits()), &what);
     }
-    let what = "bit 24: tuned values cannot be used, the old ones stay";
+    let what = "bit 26: tuned values cannot be used, the old ones stay";
     b.declare(Role::Named, Type::Word, "ST_PAR_REFUSED", Initial::Word(PAR_REFUSED), what);
 }
 

@@ -94,7 +94,7 @@ pub(super) fn last_bits(b: &mut Builder, plan: &Plan) {
 pub(super) fn write(b: &mut Builder, plan: &Plan) {
     b.note("outputs");
     b.set("OP", x("U"));
-    b.set("OP_RAW", x("V"));
+    b.set("OP_UNLIM", x("V"));
     b.set("I_TERM", x("I_SUM"));
     b.set("PD_TERM", x("PD"));
     if plan.compensator.is_some() {
