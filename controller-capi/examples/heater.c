@@ -29,7 +29,7 @@ static int report(int32_t error, const ctl_faults *faults)
 int main(void)
 {
     ctl_config config;
-    ctl_faults faults;
+    ctl_faults faults = {0}; /* stays so where init fails before it looks at the configuration */
     if (ctl_abi_version() != CTL_ABI_VERSION || ctl_config_default(&config, sizeof config) != CTL_OK) {
         return 1;
     }
