@@ -1,11 +1,11 @@
-//! From the load to the end of the response, element by element.
+//! From the load or the set-point to the end of the response, element by element.
 
 use std::vec;
 use std::vec::Vec;
 
 use core::ops::ControlFlow;
 
-use super::Load;
+use super::Drive;
 use super::map::Map;
 use super::measure::Element;
 use super::mesh::{length, mesh};
@@ -125,28 +125,34 @@ impl March {
         let mut trial = |e: &Element<'_>| {
             if e.start < 6.0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        !matches!(self.run(Load::Step, true, &mut trial).0, Outcome::Unresolved)
+        !matches!(self.run(Drive::Step, true, &mut trial).0, Outcome::Unresolved)
     }
 
     /// Shows every element to the visitor until it breaks off. Gives the states at the end as well.
     pub(super) fn run(
         &self,
-        load: Load,
+        drive: Drive,
         check: bool,
         visit: &mut dyn FnMut(&Element<'_>) -> ControlFlow<()>,
     ) -> (Outcome, Vec<f64>) {
-        let mut z = self.realisation.start(load);
-        let scale = 1.0 + self.realisation.end(load).unwrap_or(0.0).abs();
+        let mut z = self.realisation.start(drive);
+        let scale = 1.0 + self.realisation.end(drive).unwrap_or(0.0).abs();
         let mut walk = Walk { steps: 0, time: 0.0, limit: MAX_INPUT * scale };
         if self.plan.mesh.is_empty() {
             let outcome = self.double(&mut z, walk, visit);
             return (outcome, z);
         }
-        let mut history = match self.dead_time(load, visit) {
-            Ok(history) => history,
-            Err(outcome) => return (outcome, z),
+        let mut history = if drive == Drive::Setpoint {
+            // The controller acts from the first moment on, with the plant still at rest.
+            let before = [self.realisation.before_setpoint(); NODES];
+            vec![(before, [0.0; NODES]); self.plan.mesh.len()]
+        } else {
+            walk.time = 1.0;
+            match self.dead_time(drive, visit) {
+                Ok(history) => history,
+                Err(outcome) => return (outcome, z),
+            }
         };
-        walk.time = 1.0;
         if let Some(outcome) = self.elements(&mut z, &mut history, &mut walk, check, visit) {
             return (outcome, z);
         }
@@ -160,16 +166,16 @@ impl March {
     /// Nothing reaches the output yet.
     fn dead_time(
         &self,
-        load: Load,
+        drive: Drive,
         visit: &mut dyn FnMut(&Element<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<(Values, Values)>, Outcome> {
         let mut history = Vec::with_capacity(self.plan.mesh.len());
         let mut start = 0.0;
         for &level in &self.plan.mesh {
             let length = length(level);
-            let v = core::array::from_fn(|i| match load {
-                Load::Step => 1.0,
-                Load::Ramp => start + length * i as f64 / 8.0,
+            let v = core::array::from_fn(|i| match drive {
+                Drive::Ramp => start + length * i as f64 / 8.0,
+                _ => 1.0,
             });
             let y = [0.0; NODES];
             if visit(&Element { start, length, v: &v, y: &y }).is_break() {

@@ -1,4 +1,4 @@
-//! Load responses of a continuous loop with dead time, and their indices over an infinite horizon.
+//! Responses of a continuous loop with dead time to loads and set-points, and their indices over an infinite horizon.
 //!
 //! Between two multiples of the dead time the delayed signals are known, so the loop is a set of linear differential
 //! equations with a known input: the method of steps. Here every signal is a polynomial of degree 8 per element, the
@@ -10,12 +10,15 @@
 //! `1 - C_u` (Tena et al. 2022, eq. (34)); that is how an observer is computed here.
 
 mod block;
+mod chain;
 mod map;
 mod march;
 mod measure;
 mod mesh;
 mod nodes;
 mod realisation;
+mod rest;
+mod settling;
 
 use core::ops::ControlFlow;
 use std::vec::Vec;
@@ -24,9 +27,10 @@ use controller_core::PidConfig;
 
 use crate::Refusal;
 use crate::model::TransferFunction;
-use march::{March, Outcome};
+use march::March;
 use measure::{Element, Sums};
 use realisation::Realisation;
+use settling::{Settling, unstable, verdict};
 
 /// A load at the plant input that begins at `t = 0`, the loop at rest before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +39,32 @@ pub enum Load {
     Step,
     /// `d = t`, t in seconds.
     Ramp,
+}
+
+/// What moves the loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Drive {
+    Step,
+    Ramp,
+    /// A step of the set-point to an output of 1.
+    Setpoint,
+}
+
+impl From<Load> for Drive {
+    fn from(load: Load) -> Self {
+        match load {
+            Load::Step => Self::Step,
+            Load::Ramp => Self::Ramp,
+        }
+    }
+}
+
+/// `C_u` of a block whose model is the plant: `gain*prod(1-delta*s)*exp(-T*s)/(1+alpha*s)^order`.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    alpha: f64,
+    order: usize,
+    gain: f64,
 }
 
 /// A disturbance observer for the plant itself: `C_u = prod(1-delta*s)*exp(-T*s)/(1+alpha*s)^order`, `delta` for the
@@ -70,8 +100,8 @@ impl Observer {
     }
 }
 
-/// Indices of the error `e = r - y` with `r = 0`, from the load at `t = 0` to infinity. Units: those of y for a
-/// load of 1 (or a slope of 1 per second), and seconds.
+/// Indices of the error `e = r - y` from the load or the step of the set-point at `t = 0` to infinity. Units: those of y for
+/// a load of 1 (or a slope of 1 per second) or for a set-point of 1, and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Indices {
     /// Integral of e.
@@ -90,6 +120,13 @@ pub struct Indices {
     pub tv: f64,
 }
 
+impl Indices {
+    fn finite(self) -> Result<Self, Refusal> {
+        let numbers = [self.ie, self.iae, self.ise, self.itae, self.e_max];
+        if numbers.iter().all(|x| x.is_finite()) { Ok(self) } else { Err(unstable()) }
+    }
+}
+
 /// A point of a response.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
@@ -99,6 +136,15 @@ pub struct Sample {
     pub y: f64,
     /// Controller output, observer included, load not.
     pub u: f64,
+}
+
+/// What a response takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cost {
+    /// Elements of time; each is one update of the states and of nine points of both signals.
+    pub elements: usize,
+    /// Multiplications in these updates, those of the matrices themselves not counted.
+    pub multiplications: usize,
 }
 
 /// An extremum of the error.
@@ -113,8 +159,8 @@ pub struct Peak {
 /// The continuous loop of a plant, a PI or PID controller and perhaps a disturbance observer.
 ///
 /// The plant: strictly proper, any order, zeros, integrators, complex or unstable poles, any dead time or none; no
-/// zero at `s = 0`. The controller: `ki/s + ((kp - ki*tf) + kd*s)/(1 + tf*s)`, `ki != 0`, its set-point weights
-/// without effect here. The observer's model is the plant.
+/// zero at `s = 0`. The controller: `ki/s + ((kp - ki*tf) + kd*s)/(1 + tf*s)`, `ki != 0`, with the weights `b` and `c` for
+/// the set-point. The observer's model is the plant.
 ///
 /// ```
 /// use controller_core::PidConfig;
@@ -172,9 +218,61 @@ impl ContinuousResponse {
         observer: Option<Observer>,
         accuracy: f64,
     ) -> Result<Self, Refusal> {
+        check(plant, pid)?;
+        if let Some(observer) = observer {
+            within("alpha", observer.alpha, f64::MIN_POSITIVE, f64::MAX)?;
+            let least = realisation::filter_order(plant);
+            within("order", observer.order as f64, least as f64, 30.0)?;
+        }
+        let shape = observer.map(|Observer { alpha, order }| Shape { alpha, order, gain: 1.0 });
+        Self::with_shape(plant, pid, shape, accuracy)
+    }
+
+    /// The loop with a disturbance estimator whose model is the plant: self-regulating, of first or second order, without
+    /// zeros. Then the plant input sees `1 - kfd*exp(-T*s)/(1+tfd*s)^3` of the load (Vrančić & Huba 2021, eq. (15)).
+    ///
+    /// ```
+    /// use controller_core::PidConfig;
+    /// use controller_design::model::parse;
+    /// use controller_design::response::{ContinuousResponse, Load};
+    ///
+    /// let plant = parse("exp(-0.2*s)/((1+0.2*s)*(1+s))").expect("a plant");
+    /// let pid = PidConfig { kp: 2.35, ki: 1.88, kd: 0.48, tf: 0.119, ..PidConfig::default() };
+    /// let i = ContinuousResponse::with_estimator(&plant, &pid, 0.69, 0.06)?.indices(Load::Step)?;
+    /// // IE = -(1 - kfd)/ki.
+    /// assert!((i.ie + 0.31 / 1.88).abs() < 1e-6);
+    /// # Ok::<(), controller_design::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new); a plant of another kind; `kfd` not from 0 to 1, `tfd` not positive.
+    pub fn with_estimator(
+        plant: &TransferFunction,
+        pid: &PidConfig,
+        kfd: f64,
+        tfd: f64,
+    ) -> Result<Self, Refusal> {
+        check(plant, pid)?;
+        within("kfd", kfd, 0.0, 1.0)?;
+        within("tfd", tfd, f64::MIN_POSITIVE, f64::MAX)?;
+        let has_zeros = plant.relative_degree() != plant.order();
+        if plant.integrators() > 0 || plant.order() > 2 || has_zeros {
+            return Err(Refusal::Plant {
+                must: "be self-regulating, of order 1 or 2 and without zeros, as the estimator's model is",
+                help: "simulate the sampled loop instead",
+            });
+        }
+        Self::with_shape(plant, pid, Some(Shape { alpha: tfd, order: 3, gain: kfd }), Self::ACCURACY)
+    }
+
+    fn with_shape(
+        plant: &TransferFunction,
+        pid: &PidConfig,
+        shape: Option<Shape>,
+        accuracy: f64,
+    ) -> Result<Self, Refusal> {
         within("accuracy", accuracy, 1e-9, 1e-2)?;
-        check(plant, pid, observer)?;
-        let march = March::new(Realisation::new(plant, pid, observer)?, accuracy)?;
+        let march = March::new(Realisation::new(plant, pid, shape)?, accuracy)?;
         Ok(Self { march, accuracy })
     }
 
@@ -183,12 +281,12 @@ impl ContinuousResponse {
     /// # Errors
     /// The loop is unstable or does not settle; a ramp without observer, under which the error does not end.
     pub fn indices(&self, load: Load) -> Result<Indices, Refusal> {
-        let (sums, z) = self.settled(load, f64::INFINITY)?;
+        let (sums, z) = self.settled(load.into(), f64::INFINITY)?;
         let r = &self.march.realisation;
         let slope = if load == Load::Ramp { r.time } else { 1.0 };
         let y = r.gain.abs() * slope;
         let indices = Indices {
-            ie: -r.gain * slope * r.time * r.integral(load, &z),
+            ie: -r.gain * slope * r.time * r.integral(load.into(), &z),
             iae: sums.iae * y * r.time,
             ise: sums.ise * y * y * r.time,
             itae: sums.itae * y * r.time * r.time,
@@ -196,8 +294,61 @@ impl ContinuousResponse {
             t_max: sums.t_max * r.time,
             tv: if load == Load::Ramp { f64::INFINITY } else { sums.tv },
         };
-        let numbers = [indices.ie, indices.iae, indices.ise, indices.itae, indices.e_max];
-        if numbers.iter().all(|x| x.is_finite()) { Ok(indices) } else { Err(unstable()) }
+        indices.finite()
+    }
+
+    /// The indices after a unit step of the set-point, `e = r - y`, with the weights `b` and `c` of the controller; TV counts
+    /// the jump of the output at the step. A block whose model is the plant does not show. Cost: as that of
+    /// [`indices`](Self::indices).
+    ///
+    /// ```
+    /// use controller_core::PidConfig;
+    /// use controller_design::model::parse;
+    /// use controller_design::response::ContinuousResponse;
+    ///
+    /// let plant = parse("2*exp(-s)/(1+4*s)").expect("a plant");
+    /// let pid = PidConfig { kp: 0.8, ki: 0.2, b: 0.5, ..PidConfig::default() };
+    /// let i = ContinuousResponse::new(&plant, &pid, None)?.setpoint_indices()?;
+    /// // Steady state before and after: IE = (1/K + (1-b)*kp)/ki.
+    /// assert!((i.ie - (0.5 + 0.5 * 0.8) / 0.2).abs() < 1e-5);
+    /// # Ok::<(), controller_design::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The loop is unstable or does not settle.
+    pub fn setpoint_indices(&self) -> Result<Indices, Refusal> {
+        let (sums, z) = self.settled(Drive::Setpoint, f64::INFINITY)?;
+        let r = &self.march.realisation;
+        let indices = Indices {
+            ie: -r.time * r.integral(Drive::Setpoint, &z),
+            iae: sums.iae * r.time,
+            ise: sums.ise * r.time,
+            itae: sums.itae * r.time * r.time,
+            e_max: sums.y_max,
+            t_max: sums.t_max * r.time,
+            tv: (sums.tv + r.kick().abs()) / r.gain.abs(),
+        };
+        indices.finite()
+    }
+
+    /// How much one response takes: for benchmarks.
+    ///
+    /// # Errors
+    /// As for [`indices`](Self::indices).
+    pub fn cost(&self, load: Load) -> Result<Cost, Refusal> {
+        self.ends(load.into())?;
+        let mut settling = Settling::new(self.accuracy, f64::INFINITY);
+        let mut elements = 0;
+        let (outcome, z) = self.march.run(load.into(), false, &mut |e| {
+            elements += 1;
+            settling.visit(e)
+        });
+        verdict(outcome)?;
+        let states = z.len();
+        Ok(Cost {
+            elements,
+            multiplications: elements * (states + nodes::NODES) * (states + 2 * nodes::NODES),
+        })
     }
 
     /// The IAE of a step, or infinity as soon as it is known to be above `limit` or the loop is unstable; and the number of
@@ -207,7 +358,7 @@ impl ContinuousResponse {
         let unit = r.gain.abs() * r.time;
         let mut settling = Settling::new(self.accuracy, limit / unit);
         let mut elements = 0;
-        let (outcome, _) = self.march.run(Load::Step, false, &mut |e| {
+        let (outcome, _) = self.march.run(Drive::Step, false, &mut |e| {
             elements += 1;
             settling.visit(e)
         });
@@ -221,7 +372,7 @@ impl ContinuousResponse {
     /// # Errors
     /// As for [`indices`](Self::indices).
     pub fn peaks(&self, load: Load, count: usize) -> Result<Vec<Peak>, Refusal> {
-        self.ends(load)?;
+        self.ends(load.into())?;
         let r = &self.march.realisation;
         let scale = -r.gain * if load == Load::Ramp { r.time } else { 1.0 };
         let mut settling = Settling::new(self.accuracy, f64::INFINITY);
@@ -233,7 +384,7 @@ impl ContinuousResponse {
             });
             if peaks.len() >= count { ControlFlow::Break(()) } else { settling.visit(e) }
         };
-        let (outcome, _) = self.march.run(load, false, &mut visit);
+        let (outcome, _) = self.march.run(load.into(), false, &mut visit);
         verdict(outcome)?;
         peaks.truncate(count);
         Ok(peaks)
@@ -264,90 +415,29 @@ impl ContinuousResponse {
             }
             ControlFlow::Break(())
         };
-        self.march.run(load, false, &mut visit);
+        self.march.run(load.into(), false, &mut visit);
         Ok(samples)
     }
 
-    fn ends(&self, load: Load) -> Result<(), Refusal> {
-        self.march.realisation.end(load).map(|_| ()).ok_or(Refusal::NoSolution {
+    fn ends(&self, drive: Drive) -> Result<(), Refusal> {
+        self.march.realisation.end(drive).map(|_| ()).ok_or(Refusal::NoSolution {
             why: "under a ramp the error of a loop without observer stays at 1/ki for ever",
             help: "add a disturbance observer, or ask for a step",
         })
     }
 
-    fn settled(&self, load: Load, limit: f64) -> Result<(Sums, Vec<f64>), Refusal> {
-        self.ends(load)?;
+    fn settled(&self, drive: Drive, limit: f64) -> Result<(Sums, Vec<f64>), Refusal> {
+        self.ends(drive)?;
         let mut settling = Settling::new(self.accuracy, limit);
-        let (outcome, z) = self.march.run(load, false, &mut |e| settling.visit(e));
+        let (outcome, z) = self.march.run(drive, false, &mut |e| settling.visit(e));
         verdict(outcome)?;
         if settling.sums.iae > limit { Err(unstable()) } else { Ok((settling.sums, z)) }
-    }
-}
-
-/// Gathers the indices until what is left is negligible.
-struct Settling {
-    sums: Sums,
-    accuracy: f64,
-    limit: f64,
-    /// Time and ITAE at the last look, and the largest y and v since.
-    since: (f64, f64),
-    y_max: f64,
-    v_max: f64,
-    v_ever: f64,
-}
-
-impl Settling {
-    fn new(accuracy: f64, limit: f64) -> Self {
-        let sums = Sums::default();
-        Self { sums, accuracy, limit, since: (0.0, 0.0), y_max: 0.0, v_max: 0.0, v_ever: 0.0 }
-    }
-
-    fn visit(&mut self, e: &Element<'_>) -> ControlFlow<()> {
-        self.sums.add(e);
-        self.y_max = self.y_max.max(nodes::size(e.y));
-        self.v_max = self.v_max.max(nodes::size(e.v));
-        if self.sums.iae > self.limit {
-            return ControlFlow::Break(());
-        }
-        let time = e.start + e.length;
-        // A mode that dies out leaves less behind than it gave over the last quarter of the time, once it has
-        // fallen to a millionth.
-        if time < 1.25 * self.since.0 {
-            return ControlFlow::Continue(());
-        }
-        self.v_ever = self.v_ever.max(self.v_max);
-        let small = 0.1 * self.accuracy;
-        let over = self.sums.y_max > 0.0
-            && self.sums.itae - self.since.1 <= small * self.sums.itae
-            && self.y_max <= small * self.sums.y_max
-            && self.v_max <= small * self.v_ever;
-        self.since = (time, self.sums.itae);
-        (self.y_max, self.v_max) = (0.0, 0.0);
-        if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
 /// The sign of `ki` without which no loop of this plant is stable.
 pub(crate) fn sign_of_ki(plant: &TransferFunction) -> f64 {
     realisation::sign_of_ki(plant).signum()
-}
-
-fn unstable() -> Refusal {
-    Refusal::NoSolution {
-        why: "the loop of this plant and controller is unstable",
-        help: "lower kp and ki, or check the sign of the gain",
-    }
-}
-
-fn verdict(outcome: Outcome) -> Result<(), Refusal> {
-    match outcome {
-        Outcome::Stopped | Outcome::Unresolved => Ok(()),
-        Outcome::Unstable => Err(unstable()),
-        Outcome::Endless => Err(Refusal::NoSolution {
-            why: "the response of this loop does not settle in any reasonable time",
-            help: "lower kp, or raise ki if the tail is slow",
-        }),
-    }
 }
 
 fn within(parameter: &'static str, value: f64, min: f64, max: f64) -> Result<(), Refusal> {
@@ -358,7 +448,7 @@ fn within(parameter: &'static str, value: f64, min: f64, max: f64) -> Result<(),
     }
 }
 
-fn check(plant: &TransferFunction, pid: &PidConfig, observer: Option<Observer>) -> Result<(), Refusal> {
+fn check(plant: &TransferFunction, pid: &PidConfig) -> Result<(), Refusal> {
     if !plant.is_strictly_proper() {
         return Err(Refusal::Plant {
             must: "have more poles than zeros",
@@ -390,11 +480,6 @@ fn check(plant: &TransferFunction, pid: &PidConfig, observer: Option<Observer>) 
             why: "the integral gain must not be 0 and must have the sign of the plant's gain (the other one if an odd number of real poles is unstable)",
             help: "check the sign of ki, the action of the controller and the sign of the gain",
         });
-    }
-    if let Some(observer) = observer {
-        within("alpha", observer.alpha, f64::MIN_POSITIVE, f64::MAX)?;
-        let least = realisation::filter_order(plant);
-        within("order", observer.order as f64, least as f64, 30.0)?;
     }
     Ok(())
 }

@@ -7,22 +7,16 @@ use std::vec;
 use std::vec::Vec;
 
 use controller_core::PidConfig;
-use controller_core::plant_model::Factor;
 
 use super::block::Block;
-use super::{Load, Observer};
+use super::chain::{Chain, Split, split};
+use super::rest::rest;
+use super::{Drive, Shape};
 use crate::Refusal;
 use crate::model::{Polynomial, TransferFunction};
 
 /// Numbers beyond this, or below its inverse, are refused: their squares and cubes would not be numbers.
 const EXTREME: f64 = 1e60;
-
-/// `1/(g + tau*s)`; an integrator has `g = 0`.
-#[derive(Clone, Copy)]
-struct Pole {
-    g: f64,
-    tau: f64,
-}
 
 /// A pole by what matters for the resolution: size, and rate of decay (0 if it does not decay).
 #[derive(Debug, Clone, Copy)]
@@ -50,6 +44,22 @@ pub(super) struct Realisation {
     integral: usize,
     ki: f64,
     filter: Option<Filter>,
+    reference: Reference,
+}
+
+/// What a step of the set-point needs, for an output that ends at 1.
+#[derive(Debug, Clone, Default)]
+struct Reference {
+    /// Where the plant's states end.
+    plant: Vec<f64>,
+    /// Where the plant input ends: 0 with an integrator.
+    v: f64,
+    /// `(1 - b)*kp`.
+    held_back: f64,
+    /// The state of the controller's filter that the weights b and c of the set-point need, when they are not 1.
+    filter: Option<usize>,
+    /// The controller output right after the step.
+    kick: f64,
 }
 
 /// The observer's filter in units of time of the realisation.
@@ -58,32 +68,10 @@ struct Filter {
     alpha: f64,
     first: usize,
     order: usize,
+    /// `C_u` at `s = 0`: 1 of an observer, less of an estimator.
+    gain: f64,
     /// Where `1 - C_u` ends under a unit ramp.
     ramp: f64,
-}
-
-/// The real time constants and the complex pairs of the factors.
-#[derive(Default)]
-struct Split {
-    real: Vec<f64>,
-    pairs: Vec<Factor>,
-}
-
-fn split(factors: &[Polynomial], time: f64) -> Split {
-    let mut s = Split::default();
-    for f in factors.iter().flat_map(Polynomial::factors) {
-        let (a1, a2) = (f.a1 / time, f.a2 / time / time);
-        let discriminant = a1 * a1 - 4.0 * a2;
-        if a2 == 0.0 {
-            s.real.push(a1);
-        } else if discriminant >= 0.0 {
-            let larger = 0.5 * (a1 + libm::copysign(libm::sqrt(discriminant), a1));
-            s.real.extend([larger, a2 / larger]);
-        } else {
-            s.pairs.push(Factor::second(a1, a2));
-        }
-    }
-    s
 }
 
 /// The order of the observer's filter that leaves no pure derivative: poles less zeros in the left half-plane.
@@ -124,7 +112,7 @@ impl Realisation {
     pub(super) fn new(
         plant: &TransferFunction,
         pid: &PidConfig,
-        observer: Option<Observer>,
+        shape: Option<Shape>,
     ) -> Result<Self, Refusal> {
         let [kp, ki, kd] = pid.signed_gains();
         let delayed = plant.dead_time() > 0.0;
@@ -143,6 +131,7 @@ impl Realisation {
             integral: plant.order(),
             ki: ki * gain * time,
             filter: None,
+            reference: Reference::default(),
         };
         let mut chain = Chain::of_plant(plant.integrators(), &poles, &zeros)?;
         let (y, b_states) = (chain.row.clone(), plant.order());
@@ -152,6 +141,11 @@ impl Realisation {
         k.push(-left_out.ki);
         let (kp, kd, tf) = (kp * gain, kd * gain / time, pid.tf / time);
         let mut r = left_out;
+        let (plant_states, v) = rest(&chain.a[..b_states], &chain.b[..b_states], &y).ok_or(FAR_APART)?;
+        // The weights of the set-point are those of the law that runs: b, and c of its derivative.
+        r.reference =
+            Reference { plant: plant_states, v, held_back: (1.0 - pid.b) * kp, ..Reference::default() };
+        r.reference.kick = if tf > 0.0 { pid.c * kd / tf } else { pid.b * kp };
         if tf > 0.0 {
             // C(s) = ki/s + ((kp - ki*tf) + kd*s)/(1 + tf*s)
             chain.state(&y.iter().map(|c| c / tf).collect::<Vec<_>>(), 0.0, -1.0 / tf);
@@ -159,11 +153,17 @@ impl Realisation {
             k.push(direct - (kp - r.ki * tf));
             k.iter_mut().zip(&y).for_each(|(k, c)| *k -= direct * c);
             r.modes.push(Mode { size: 1.0 / tf, decay: 1.0 / tf, rings: false });
+            let weighted = (pid.b - 1.0) * kp - (pid.c - 1.0) * direct;
+            if weighted != 0.0 {
+                r.reference.filter = Some(chain.a.len());
+                chain.state(&[], 0.0, -1.0 / tf);
+                k.push(weighted);
+            }
         } else {
             k.iter_mut().zip(&y).for_each(|(k, c)| *k -= kp * c);
         }
-        if let Some(observer) = observer {
-            let (alpha, order) = (observer.alpha / time, observer.order);
+        if let Some(Shape { alpha, order, gain }) = shape {
+            let alpha = alpha / time;
             let first = chain.a.len();
             for i in 0..order {
                 let mut row = vec![0.0; chain.a.len()];
@@ -177,11 +177,11 @@ impl Realisation {
             for (power, c) in numerator(&zeros, alpha).into_iter().enumerate() {
                 // c/(1 + alpha*s)^lags
                 let lags = order - power;
-                through[lags - 1] = -c;
+                through[lags - 1] = -gain * c;
                 ramp += c * alpha * lags as f64;
             }
             k.extend(through);
-            r.filter = Some(Filter { alpha, first, order, ramp });
+            r.filter = Some(Filter { alpha, first, order, gain, ramp });
             r.modes.push(Mode { size: 1.0 / alpha, decay: 1.0 / alpha, rings: false });
         }
         let n = chain.a.len();
@@ -199,44 +199,71 @@ impl Realisation {
         let moderate = |x: &f64| *x == 0.0 || (x.abs() > 1.0 / EXTREME && x.abs() < EXTREME);
         let good = numbers.copied().all(|x| moderate(&x)) && r.a.norm() < EXTREME;
         if !good || r.gain == 0.0 || r.ki == 0.0 || r.time <= 0.0 {
-            return Err(Refusal::NoSolution {
-                why: "the numbers of the loop are too far apart to be computed with",
-                help: "write the plant and the gains in units closer to its own time constants",
-            });
+            return Err(FAR_APART);
         }
         Ok(r)
     }
 
     /// Where the load that is left by the observer ends; `None` if it never ends.
-    pub(super) fn end(&self, load: Load) -> Option<f64> {
-        match (load, &self.filter) {
-            (Load::Step, None) => Some(1.0),
-            (Load::Step, Some(_)) => Some(0.0),
-            (Load::Ramp, None) => None,
-            (Load::Ramp, Some(filter)) => Some(filter.ramp),
+    pub(super) fn end(&self, drive: Drive) -> Option<f64> {
+        match (drive, &self.filter) {
+            (Drive::Setpoint, _) => Some(0.0),
+            (Drive::Step, None) => Some(1.0),
+            (Drive::Step, Some(filter)) => Some(1.0 - filter.gain),
+            (Drive::Ramp, Some(filter)) if filter.gain == 1.0 => Some(filter.ramp),
+            (Drive::Ramp, _) => None,
         }
     }
 
-    /// The states when the load first reaches the output.
-    pub(super) fn start(&self, load: Load) -> Vec<f64> {
+    /// The states when the load first reaches the output; for a set-point, right after its step.
+    pub(super) fn start(&self, drive: Drive) -> Vec<f64> {
         let mut z = vec![0.0; self.a.rows];
-        z[self.integral] = -self.end(load).unwrap_or(0.0) / self.ki;
+        z[self.integral] = self.integral_at_start(drive);
+        if drive == Drive::Setpoint {
+            z.iter_mut().zip(&self.reference.plant).for_each(|(z, end)| *z = -end);
+            if let Some(filter) = self.reference.filter {
+                z[filter] = -1.0;
+            }
+            return z;
+        }
         if let Some(filter) = &self.filter {
             for i in 0..filter.order {
-                z[filter.first + i] = match load {
-                    Load::Step => -1.0,
-                    Load::Ramp => filter.alpha * (i as f64 + 1.0),
+                z[filter.first + i] = match drive {
+                    Drive::Ramp => filter.alpha * (i as f64 + 1.0),
+                    _ => -1.0,
                 };
             }
         }
         z
     }
 
-    /// Integral of the output from the start to these states, in units of the realisation.
-    pub(super) fn integral(&self, load: Load, z: &[f64]) -> f64 {
-        z[self.integral] + self.end(load).unwrap_or(0.0) / self.ki
+    fn integral_at_start(&self, drive: Drive) -> f64 {
+        match drive {
+            Drive::Setpoint => (self.reference.v + self.reference.held_back) / self.ki,
+            _ => -self.end(drive).unwrap_or(0.0) / self.ki,
+        }
+    }
+
+    /// Integral of the output, less its end, from the start to these states, in units of the realisation.
+    pub(super) fn integral(&self, drive: Drive, z: &[f64]) -> f64 {
+        z[self.integral] - self.integral_at_start(drive)
+    }
+
+    /// The plant input before a step of the set-point, less its end.
+    pub(super) fn before_setpoint(&self) -> f64 {
+        -self.reference.v
+    }
+
+    /// The jump of the controller output with a step of the set-point.
+    pub(super) fn kick(&self) -> f64 {
+        self.reference.kick
     }
 }
+
+const FAR_APART: Refusal = Refusal::NoSolution {
+    why: "the numbers of the loop are too far apart to be computed with",
+    help: "write the plant and the gains in units closer to its own time constants",
+};
 
 fn modes(poles: &Split) -> Vec<Mode> {
     let real =
@@ -261,114 +288,4 @@ fn numerator(zeros: &Split, alpha: f64) -> Vec<f64> {
         .rev()
         .fold(Polynomial::default(), |sum, &c| &(&sum * &s) + &Polynomial::constant(c));
     in_x.coefficients().to_vec()
-}
-
-/// States in the order in which the signal passes them.
-struct Chain {
-    a: Vec<Vec<f64>>,
-    b: Vec<f64>,
-    /// The signal behind the last state: this row of the states plus `direct` times the input.
-    row: Vec<f64>,
-    direct: f64,
-}
-
-impl Chain {
-    fn of_plant(integrators: usize, poles: &Split, zeros: &Split) -> Result<Self, Refusal> {
-        let mut pairs: Vec<(Factor, [f64; 2])> = poles.pairs.iter().map(|&p| (p, [0.0; 2])).collect();
-        let mut single: Vec<Pole> = poles.real.iter().map(|&tau| Pole { g: 1.0, tau }).collect();
-        single.extend(vec![Pole { g: 0.0, tau: 1.0 }; integrators]);
-        let mut twos = Vec::new();
-        let mut free_pairs = 0..pairs.len();
-        let unplaced = Refusal::Plant {
-            must: "have more poles than zeros",
-            help: "add the lag of the actuator or of the sensor to the plant",
-        };
-        for zero in &zeros.pairs {
-            if let Some(i) = free_pairs.next() {
-                pairs[i].1 = [zero.a1, zero.a2];
-            } else if single.len() > 1 {
-                twos.push((single.remove(0), single.remove(0), [zero.a1, zero.a2]));
-            } else {
-                return Err(unplaced);
-            }
-        }
-        let mut ones = Vec::new();
-        let mut rest = zeros.real.iter();
-        for &zero in rest.by_ref().take(single.len()) {
-            let distance =
-                |p: &Pole| (libm::log(p.tau.abs()) - libm::log(zero.abs())).abs() + 50.0 * (1.0 - p.g);
-            let near = |i: &usize, j: &usize| distance(&single[*i]).total_cmp(&distance(&single[*j]));
-            let Some(i) = (0..single.len()).min_by(near) else { return Err(unplaced) };
-            ones.push((single.remove(i), zero));
-        }
-        while let Some(first) = rest.next() {
-            let Some(i) = free_pairs.next() else { return Err(unplaced) };
-            let second = rest.next().copied().unwrap_or(0.0);
-            pairs[i].1 = [first + second, first * second];
-        }
-        let mut chain = Self { a: Vec::new(), b: Vec::new(), row: Vec::new(), direct: 1.0 };
-        single.into_iter().for_each(|p| chain.one(p, 0.0));
-        let (last, first): (Vec<_>, Vec<_>) = pairs.into_iter().partition(|p| p.1[1] != 0.0);
-        first.into_iter().chain(last).for_each(|(p, [b1, b2])| chain.pair(p, b1, b2));
-        ones.into_iter().for_each(|(p, zero)| chain.one(p, zero));
-        twos.into_iter().for_each(|(p, q, [b1, b2])| chain.two(p, q, b1, b2));
-        if chain.direct == 0.0 { Ok(chain) } else { Err(unplaced) }
-    }
-
-    /// Adds `x' = row*states + input*v + own*x`.
-    fn state(&mut self, row: &[f64], input: f64, own: f64) {
-        let mut a = row.to_vec();
-        a.resize(self.a.len(), 0.0);
-        a.push(own);
-        self.a.push(a);
-        self.b.push(input);
-        self.row.push(0.0);
-    }
-
-    fn scaled(&self, factor: f64) -> (Vec<f64>, f64) {
-        (self.row.iter().map(|c| c * factor).collect(), self.direct * factor)
-    }
-
-    /// One first-order pole; its state is the last.
-    fn lag(&mut self, pole: Pole) {
-        let (row, direct) = self.scaled(1.0 / pole.tau);
-        self.state(&row, direct, -pole.g / pole.tau);
-    }
-
-    /// `(1 + zero*s)/(g + tau*s)`.
-    fn one(&mut self, pole: Pole, zero: f64) {
-        let c0 = zero / pole.tau;
-        let (mut row, direct) = self.scaled(c0);
-        self.lag(pole);
-        row.push(1.0 - c0 * pole.g);
-        (self.row, self.direct) = (row, direct);
-    }
-
-    /// `(1 + b1*s + b2*s^2)` over two first-order poles.
-    fn two(&mut self, p: Pole, q: Pole, b1: f64, b2: f64) {
-        let c0 = b2 / (p.tau * q.tau);
-        let c1 = (b1 - c0 * (p.g * q.tau + q.g * p.tau)) / q.tau;
-        let c2 = 1.0 - c0 * p.g * q.g - c1 * q.g;
-        let (mut row, direct) = self.scaled(c0);
-        self.one(p, 0.0);
-        self.one(q, 0.0);
-        row.extend([c1, c2]);
-        (self.row, self.direct) = (row, direct);
-    }
-
-    /// `(1 + b1*s + b2*s^2)/(1 + a1*s + a2*s^2)` with complex poles.
-    fn pair(&mut self, p: Factor, b1: f64, b2: f64) {
-        let w = 1.0 / libm::sqrt(p.a2);
-        let damping = p.a1 * w * w;
-        let (mut row, direct) = self.scaled(b2 * w * w);
-        let (mut drive, input) = self.scaled(w);
-        self.state(&[], 0.0, 0.0);
-        let x1 = self.a.len() - 1;
-        drive.push(-w);
-        self.state(&drive, input, -damping);
-        // x1' = w*x2
-        self.a[x1].push(w);
-        row.extend([1.0 - b2 * w * w, w * (b1 - b2 * damping)]);
-        (self.row, self.direct) = (row, direct);
-    }
 }
