@@ -1,20 +1,22 @@
 //! From a request to a design, rule by rule.
 
-use super::calmer::calmer;
+use super::calmer::{Judged, calmer};
 use super::finish::finish;
 use super::robust::within;
 use super::{Design, EstimatorFilter, Filter, Law, Method, Noise, ObserverFilter, Request, RuleModel};
 use crate::areas::Areas;
-use crate::margins::{DiscreteLaw, DiscreteLoop};
+use crate::margins::{DiscreteLaw, DiscreteLoop, Margins};
 use crate::model::{Sopdt, TransferFunction};
 use crate::rules::noise_limit::{self, PidRule, least_kpidn};
 use crate::rules::reduction::Reduced;
 use crate::rules::{
-    PiIae, alpha_for, de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::ObserverDesign, pi_ms::PiMs,
+    PiIae, alpha_for, de_momi::DeMomi, drmo::Drmo, momi::Momi, observer::Choice, observer::ObserverDesign,
+    pi_ms::PiMs,
 };
 use crate::warning::warn;
 use crate::{Refusal, Warning, Warnings};
 use controller_core::{EstimatorConfig, ObserverConfig, PidConfig};
+use core::cell::RefCell;
 
 /// Default maximum sensitivity of rules that are given one.
 const DEFAULT_MS: f64 = 1.4;
@@ -55,20 +57,50 @@ pub fn design_with_areas(
     measured: Option<&Areas>,
     request: &Request,
 ) -> Result<Design, Refusal> {
-    check("ts", request.ts, f64::MIN_POSITIVE, 1e9)?;
-    check("latency", request.latency, 0.0, 1e12)?;
-    let usual = DEFAULT_NOISE_GAIN / measured.map_or(plant.gain(), |areas| areas.of(0)).abs();
-    let once = |request: &Request| once(plant, measured, request);
-    once(request).or_else(|refusal| calmer(request, usual, &refusal, once).ok_or(refusal))
+    Setting { plant, measured, shared: &Shared::default() }.design(request)
 }
 
-/// By the request as it is.
-fn once(plant: &TransferFunction, measured: Option<&Areas>, request: &Request) -> Result<Design, Refusal> {
-    let delayed = late(plant, request.latency)?;
-    let mut job = Job { plant, delayed, measured, request, made: Made::default() };
-    let law = job.law()?;
-    let Job { delayed, made, .. } = job;
-    finish(plant, &delayed, request, law, made)
+/// What designs for one plant have in common.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    /// By latency and `Ms`.
+    pis: RefCell<Vec<([f64; 2], Result<PiMs, Refusal>)>>,
+}
+
+/// For what is designed.
+#[derive(Clone, Copy)]
+pub(super) struct Setting<'a> {
+    pub(super) plant: &'a TransferFunction,
+    pub(super) measured: Option<&'a Areas>,
+    pub(super) shared: &'a Shared,
+}
+
+impl Setting<'_> {
+    /// The design with everything that is said of it.
+    pub(super) fn design(self, request: &Request) -> Result<Design, Refusal> {
+        self.within_reason(request, |delayed, request, law, made| {
+            finish(self.plant, delayed, request, law, made)
+        })
+    }
+
+    /// By the request as it is, or calmer; `finish` judges the loop behind the latency.
+    pub(super) fn within_reason<T: Judged>(
+        self,
+        request: &Request,
+        finish: impl Fn(&TransferFunction, &Request, Law, Made) -> Result<T, Refusal>,
+    ) -> Result<T, Refusal> {
+        check("ts", request.ts, f64::MIN_POSITIVE, 1e9)?;
+        check("latency", request.latency, 0.0, 1e12)?;
+        let usual = DEFAULT_NOISE_GAIN / self.measured.map_or(self.plant.gain(), |areas| areas.of(0)).abs();
+        let once = |request: &Request| {
+            let delayed = late(self.plant, request.latency)?;
+            let mut job = Job { setting: self, delayed, request, made: Made::default() };
+            let law = job.law()?;
+            let Job { delayed, made, .. } = job;
+            finish(&delayed, request, law, made)
+        };
+        once(request).or_else(|refusal| calmer(request, usual, &refusal, once).ok_or(refusal))
+    }
 }
 
 /// What a rule leaves behind besides the law.
@@ -78,6 +110,8 @@ pub(super) struct Made {
     pub(super) model: Option<RuleModel>,
     pub(super) noise: Noise,
     pub(super) iae_load: Option<f64>,
+    /// Margins of the continuous loop, when the rule has them already.
+    pub(super) margins: Option<Margins>,
     pub(super) warnings: Warnings,
 }
 
@@ -88,10 +122,9 @@ impl Made {
 }
 
 pub(super) struct Job<'a> {
-    plant: &'a TransferFunction,
+    setting: Setting<'a>,
     /// The plant behind the latency.
     pub(super) delayed: TransferFunction,
-    measured: Option<&'a Areas>,
     pub(super) request: &'a Request,
     pub(super) made: Made,
 }
@@ -114,7 +147,7 @@ impl Job<'_> {
 
     /// The areas that the rules use.
     pub(super) fn areas(&mut self) -> Result<Areas, Refusal> {
-        let areas = match self.measured {
+        let areas = match self.setting.measured {
             // A delay in front of the process is one in front of its response.
             Some(areas) => areas.delayed(self.request.latency),
             None => self.delayed.areas6()?,
@@ -209,7 +242,21 @@ impl Job<'_> {
     }
 
     fn within_ms(&mut self) -> Result<PidConfig, Refusal> {
-        let made = PiMs::new(&self.delayed, self.request.ms.unwrap_or(DEFAULT_MS))?;
+        let key = [self.request.latency, self.request.ms.unwrap_or(DEFAULT_MS)];
+        let known = self
+            .setting
+            .shared
+            .pis
+            .borrow()
+            .iter()
+            .find(|(other, _)| *other == key)
+            .map(|(_, pi)| pi.clone());
+        let made = known.unwrap_or_else(|| {
+            let made = PiMs::new(&self.delayed, key[1]);
+            self.setting.shared.pis.borrow_mut().push((key, made.clone()));
+            made
+        })?;
+        self.made.margins = Some(made.margins);
         made.warnings.iter().for_each(|warning| self.warn(*warning));
         Ok(made.pid)
     }
@@ -218,13 +265,15 @@ impl Job<'_> {
         let pid = self.within_ms()?;
         let most = self.request.ms_max;
         let made = match (self.request.observer_filter, most) {
-            (ObserverFilter::Time(alpha), _) => ObserverDesign::with_alpha(&self.delayed, &pid, alpha),
+            (ObserverFilter::Time(alpha), _) => {
+                ObserverDesign::beside(&self.delayed, &pid, Choice::Time(alpha))
+            }
             (ObserverFilter::Wanted(wish), _) => {
                 let alpha = alpha_for(&self.delayed, &pid, wish)?;
-                ObserverDesign::with_alpha(&self.delayed, &pid, alpha)
+                ObserverDesign::beside(&self.delayed, &pid, Choice::Time(alpha))
             }
             (ObserverFilter::NoiseRatio(ratio), None) => {
-                ObserverDesign::with_noise_ratio(&self.delayed, &pid, ratio)
+                ObserverDesign::beside(&self.delayed, &pid, Choice::NoiseRatio(ratio))
             }
             (ObserverFilter::NoiseRatio(ratio), Some(most)) => {
                 ObserverDesign::within_ms(&self.delayed, &pid, ratio, most)
@@ -266,9 +315,10 @@ impl Job<'_> {
         }
         told.iter().for_each(|warning| self.warn(*warning));
         self.made.noise.an = Some(made.an);
+        self.made.margins = Some(made.margins);
         let mut observer: ObserverConfig = made.observer;
         // The block adds the latency itself.
-        observer.model.dead_time = self.plant.dead_time();
+        observer.model.dead_time = self.setting.plant.dead_time();
         Ok(Law::Pid { pid, estimator: None, observer: Some(observer) })
     }
 
@@ -300,7 +350,7 @@ impl Job<'_> {
                     least: reached,
                 });
             }
-            made = ObserverDesign::with_alpha(&self.delayed, pid, SLOWER * made.observer.alpha)?;
+            made = ObserverDesign::beside(&self.delayed, pid, Choice::Time(SLOWER * made.observer.alpha))?;
         }
         Err(Refusal::Unattainable { what: "ms_max", asked: most, least: ms(&made) })
     }

@@ -1,8 +1,8 @@
 //! A lower noise gain where the usual one gives no stable loop.
 
-use super::{Design, Filter, Method, Request};
+use super::{ContinuousDesign, Design, Filter, Method, Request};
 use crate::margins::{TOO_LONG, TOO_MANY_TURNS};
-use crate::{Refusal, Warning};
+use crate::{Refusal, Warning, Warnings};
 
 /// From one noise gain to the next.
 const STEP: f64 = 0.8;
@@ -14,10 +14,45 @@ impl Design {
     pub const fn ms(&self) -> f64 {
         self.robustness.ms.max(self.sampled.margins.ms)
     }
+}
+
+/// What tells whether a design is robust, and takes the note on its noise gain.
+pub(super) trait Judged {
+    fn peak(&self) -> f64;
+    fn kpidn(&self) -> Option<f64>;
+    fn warnings(&mut self) -> &mut Warnings;
 
     /// Whether `Ms` is at most 2.
-    pub(super) const fn is_robust(&self) -> bool {
-        self.ms() <= super::finish::ROBUST
+    fn is_robust(&self) -> bool {
+        self.peak() <= super::finish::ROBUST
+    }
+}
+
+impl Judged for Design {
+    fn peak(&self) -> f64 {
+        self.ms()
+    }
+
+    fn kpidn(&self) -> Option<f64> {
+        self.noise.kpidn
+    }
+
+    fn warnings(&mut self) -> &mut Warnings {
+        &mut self.warnings
+    }
+}
+
+impl Judged for ContinuousDesign {
+    fn peak(&self) -> f64 {
+        self.robustness.ms
+    }
+
+    fn kpidn(&self) -> Option<f64> {
+        self.noise.kpidn
+    }
+
+    fn warnings(&mut self) -> &mut Warnings {
+        &mut self.warnings
     }
 }
 
@@ -26,25 +61,25 @@ impl Design {
 ///
 /// On plants that are nearly pure dead time the PID of the magnitude optimum leaves more than a loop gain of 1 beyond the
 /// dead time, unless its filter is slow.
-pub(super) fn calmer(
+pub(super) fn calmer<T: Judged>(
     request: &Request,
     usual: f64,
     refusal: &Refusal,
-    design: impl Fn(&Request) -> Result<Design, Refusal>,
-) -> Option<Design> {
+    design: impl Fn(&Request) -> Result<T, Refusal>,
+) -> Option<T> {
     let has_noise_gain = matches!(request.method, Method::Momi | Method::Drmo | Method::DeMomi);
     let is_hopeless = *refusal == TOO_LONG || *refusal == TOO_MANY_TURNS;
     let is_loop = matches!(refusal, Refusal::NoSolution { .. });
     if !has_noise_gain || !is_loop || is_hopeless || request.filter != Filter::Default {
         return None;
     }
-    let mut best: Option<Design> = None;
+    let mut best: Option<T> = None;
     let mut kpidn = usual;
     for _ in 0..STEPS {
         kpidn *= STEP;
         match design(&Request { filter: Filter::NoiseGain(kpidn), ..*request }) {
             Ok(made) => {
-                let is_better = best.as_ref().is_none_or(|best| made.ms() < best.ms());
+                let is_better = best.as_ref().is_none_or(|best| made.peak() < best.peak());
                 let is_robust = made.is_robust();
                 best = if is_better { Some(made) } else { best };
                 if is_robust {
@@ -57,7 +92,7 @@ pub(super) fn calmer(
     }
     let mut made = best?;
     let text = "lowered from 4/|K|, with which the loop is not stable";
-    let warning = Warning::Value { about: "kpidn", value: made.noise.kpidn?, text };
-    crate::warning::warn(&mut made.warnings, warning);
+    let warning = Warning::Value { about: "kpidn", value: made.kpidn()?, text };
+    crate::warning::warn(made.warnings(), warning);
     Some(made)
 }

@@ -1,7 +1,7 @@
 //! What can be said of a loop once its law is made.
 
 use super::build::Made;
-use super::{Design, Law, Method, Predicted, Request, Sampled};
+use super::{ContinuousDesign, Design, Law, Method, Predicted, Request, Sampled};
 use crate::margins::{ContinuousLoop, DiscreteLaw, DiscreteLoop, Margins, TOO_MANY_TURNS};
 use crate::model::TransferFunction;
 use crate::rules::noise_limit;
@@ -100,6 +100,34 @@ pub(super) fn fragile(method: Method) -> &'static str {
     }
 }
 
+/// The margins of the continuous loop; `known`: those of the rule, which saw a latency as a part of the plant.
+fn robustness(
+    plant: &TransferFunction,
+    law: &Law,
+    latency: f64,
+    known: Option<Margins>,
+) -> Result<Margins, Refusal> {
+    match known {
+        Some(known) if latency == 0.0 => Ok(known),
+        _ => continuous(plant, law, latency)?.margins(),
+    }
+}
+
+/// What can be said of the continuous loop.
+pub(super) fn finish_continuous(
+    plant: &TransferFunction,
+    request: &Request,
+    law: Law,
+    made: Made,
+) -> Result<ContinuousDesign, Refusal> {
+    let Made { mut noise, margins, warnings, .. } = made;
+    let robustness = robustness(plant, &law, request.latency, margins)?;
+    if let Law::Pid { pid, .. } = &law {
+        noise.kpidn = Some(noise_limit::kpidn(pid, request.ts));
+    }
+    Ok(ContinuousDesign { method: request.method, law, robustness, noise, warnings })
+}
+
 /// What can be said of the loop as a whole.
 pub(super) fn finish(
     plant: &TransferFunction,
@@ -108,8 +136,8 @@ pub(super) fn finish(
     law: Law,
     made: Made,
 ) -> Result<Design, Refusal> {
-    let Made { areas, model, mut noise, iae_load, mut warnings } = made;
-    let robustness = continuous(plant, &law, request.latency)?.margins()?;
+    let Made { areas, model, mut noise, iae_load, margins, mut warnings } = made;
+    let robustness = robustness(plant, &law, request.latency, margins)?;
     let sampled = sampled(plant, &law, request)?;
     let mut predicted = Predicted { iae_load, ..Predicted::default() };
     let mut filtered_areas = None;

@@ -14,6 +14,7 @@
 mod adrc;
 mod build;
 mod calmer;
+mod designer;
 mod finish;
 mod method;
 mod models;
@@ -22,6 +23,7 @@ mod request;
 mod robust;
 
 pub use build::{design, design_with_areas};
+pub use designer::{ContinuousDesign, Designer};
 pub use method::Method;
 pub use remedy::{Remedy, remedies};
 pub use request::{AdrcGain, EstimatorFilter, Filter, ObserverFilter, Request};

@@ -1,5 +1,6 @@
 //! What gives a design where a rule has none: tried, not guessed.
 
+use super::calmer::Judged;
 use super::{Design, Filter, Method, ObserverFilter, Request, design};
 use crate::Refusal;
 use crate::model::TransferFunction;

@@ -4,7 +4,7 @@ use controller_core::PidConfig;
 use controller_core::compensator::ObserverConfig;
 use controller_core::plant_model::{Factor, PlantModel};
 
-use crate::margins::{ContinuousLoop, lead, split_zeros};
+use crate::margins::{ContinuousLoop, Margins, lead, split_zeros};
 use crate::model::{ModelError, TransferFunction};
 use crate::{Refusal, Warning, Warnings};
 
@@ -66,6 +66,8 @@ pub struct ObserverDesign {
     pub an: f64,
     /// The sensitivity peak of the loop with the observer.
     pub ms: f64,
+    /// Margins of the loop with the observer.
+    pub margins: Margins,
     /// What to know about the design.
     pub warnings: Warnings,
 }
@@ -79,6 +81,15 @@ impl ObserverDesign {
     /// the observer.
     pub fn with_alpha(plant: &TransferFunction, pid: &PidConfig, alpha: f64) -> Result<Self, Refusal> {
         Setting::new(plant, pid)?.design(alpha)
+    }
+
+    /// The observer beside a controller whose loop is known to be stable.
+    pub(crate) fn beside(plant: &TransferFunction, pid: &PidConfig, choice: Choice) -> Result<Self, Refusal> {
+        let setting = Setting::of_stable(plant, pid)?;
+        match choice {
+            Choice::Time(alpha) => setting.design(alpha),
+            Choice::NoiseRatio(ratio) => setting.design(setting.alpha(ratio)?),
+        }
     }
 
     /// The observer that makes the noise gain `ratio` times the controller's own, `ratio` above 1:
@@ -166,6 +177,15 @@ impl ObserverDesign {
     }
 }
 
+/// How the filter is chosen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Choice {
+    /// Its time constant \[s\].
+    Time(f64),
+    /// The noise gain over the controller's own.
+    NoiseRatio(f64),
+}
+
 /// Plant and controller, and what follows from them.
 struct Setting {
     closed: ContinuousLoop,
@@ -179,6 +199,13 @@ struct Setting {
 
 impl Setting {
     fn new(plant: &TransferFunction, pid: &PidConfig) -> Result<Self, Refusal> {
+        let setting = Self::of_stable(plant, pid)?;
+        // With a model that is the plant the observer changes nothing about stability.
+        setting.closed.margins()?;
+        Ok(setting)
+    }
+
+    fn of_stable(plant: &TransferFunction, pid: &PidConfig) -> Result<Self, Refusal> {
         if !plant.is_strictly_proper() {
             return Err(Refusal::Plant {
                 must: "have more poles than zeros for an observer",
@@ -202,8 +229,6 @@ impl Setting {
         }
         let lead = lead(&model.poles, &moved) / model.gain;
         let closed = ContinuousLoop::new(plant, pid);
-        // With a model that is the plant the observer changes nothing about stability.
-        closed.margins()?;
         Ok(Self { closed, model, order, high, lead })
     }
 
@@ -231,14 +256,15 @@ impl Setting {
         }
         let observer = ObserverConfig { model: self.model.clone(), alpha, order: None };
         let closed = self.closed.clone().with_observer(&observer)?;
-        let ms = closed.margins()?.ms;
+        let margins = closed.margins()?;
+        let ms = margins.ms;
         let mut warnings = Warnings::new();
         if ms > HIGH_MS {
             let text =
                 "little robustness against model errors; raise alpha, or start from a PI with a smaller ms";
             let _ = warnings.push(Warning::Value { about: "ms", value: ms, text });
         }
-        Ok(ObserverDesign { observer, order: self.order, an: closed.noise_gain(), ms, warnings })
+        Ok(ObserverDesign { observer, order: self.order, an: closed.noise_gain(), ms, margins, warnings })
     }
 }
 

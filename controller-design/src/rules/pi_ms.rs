@@ -6,7 +6,7 @@ mod search;
 use controller_core::PidConfig;
 
 use crate::frequency::{Features, Response};
-use crate::margins::ContinuousLoop;
+use crate::margins::{ContinuousLoop, Margins};
 use crate::model::TransferFunction;
 use crate::{Refusal, Warning, Warnings};
 use region::Region;
@@ -62,6 +62,8 @@ pub struct PiMs {
     pub ms: f64,
     /// Where it is \[rad/s\].
     pub omega: f64,
+    /// Margins of the loop.
+    pub margins: Margins,
     /// What to know about the design.
     pub warnings: Warnings,
 }
@@ -115,7 +117,7 @@ impl PiMs {
             let text = "the limit of proportional control; a resonance holds the gains down, more damping would help";
             let _ = warnings.push(Warning::Value { about: "kp", value: pid.kp, text });
         }
-        Ok(Self { pid, ms: found.ms, omega: found.omega, warnings })
+        Ok(Self { pid, ms: found.ms, omega: found.omega, margins, warnings })
     }
 }
 
