@@ -3,6 +3,7 @@
 mod analyze;
 mod arguments;
 mod assess;
+mod batch;
 mod design;
 mod examples;
 mod execute;
@@ -107,6 +108,7 @@ pub fn main() -> ExitCode {
         Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),
         Some(Command::Identify(arguments)) => identify::run(&arguments, json, &command),
         Some(Command::Export(arguments)) => export::run(&arguments, json),
+        Some(Command::Batch(arguments)) => batch::run(&arguments, json),
         Some(Command::Reproduce(arguments)) => reproduce::run(&arguments, json),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),

@@ -2,7 +2,7 @@
 
 use crate::design_file;
 use crate::scenario::{DesignFile, read, show_short};
-use crate::simulate::{COLUMNS, ControllerResult, Precision, RunOptions, View, run};
+use crate::simulate::{COLUMNS, ControllerResult, Metrics, Precision, RunOptions, View, run};
 use controller_design::design::Design;
 
 /// Steps between the samples are left out of windows longer than this, in samples.
@@ -15,6 +15,10 @@ pub struct DesignRun {
     pub iae_setpoint: f64,
     /// The same after a unit step of the load at the plant's input \[y s\].
     pub iae_load: f64,
+    /// All indices of that step of the set-point.
+    pub setpoint: Metrics,
+    /// And of that step of the load.
+    pub load: Metrics,
     /// Why the figures are not those of a loop that works: fallbacks, limits, an error that does not die out.
     pub troubles: Vec<String>,
     /// That the window was too short for the response.
@@ -51,14 +55,30 @@ pub fn run_file(made: &Design, mut file: DesignFile, longest: f64) -> Option<Des
     let record = Some(View { columns: COLUMNS, ..View::whole(scenario.duration) });
     let result = run(&scenario, RunOptions { record, ..RunOptions::default() }).ok()?;
     let result = result.controllers.first()?;
-    let [setpoint, load] = [result.events.first()?, result.events.get(1)?].map(|part| part.metrics.iae);
-    let [iae_setpoint, iae_load] = [setpoint / file.setpoint_step.abs(), load / file.load_step.abs()];
+    let [setpoint, load] = [result.events.first()?, result.events.get(1)?].map(|part| part.metrics);
+    let [setpoint, load] = [per_unit(&setpoint, file.setpoint_step), per_unit(&load, file.load_step)];
+    let [iae_setpoint, iae_load] = [setpoint.iae, load.iae];
     (iae_setpoint.is_finite() && iae_load.is_finite()).then(|| DesignRun {
         iae_setpoint,
         iae_load,
+        setpoint,
+        load,
         troubles: troubles(result, &file),
         cut,
     })
+}
+
+/// The indices for a step of 1 from those for this one.
+fn per_unit(of: &Metrics, step: f64) -> Metrics {
+    let size = step.abs();
+    Metrics {
+        ie: of.ie / step,
+        iae: of.iae / size,
+        ise: of.ise / (step * step),
+        itae: of.itae / size,
+        e_max: of.e_max / size,
+        tv: of.tv / size,
+    }
 }
 
 /// What the simulated loop of a design ran into: the remarks on its run, and the limits of its output other than one at

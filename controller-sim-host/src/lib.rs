@@ -9,6 +9,7 @@
 //! * [`report`]: pages and pictures.
 //! * [`advise`], [`design_file`], [`tuning`]: what the tuning rules make of a plant or a record.
 //! * [`advise`], [`design_file`]: what the tuning rules make of a plant.
+//! * [`batch`]: many plants by many rules.
 //! * [`reproduce`]: every table of the papers, computed again.
 //! * [`pil`]: the controllers in an image on an emulated board, compared bit by bit.
 //! * [`cli`]: the program `controller-sim`.
@@ -28,6 +29,7 @@
 
 pub mod advise;
 pub mod analysis;
+pub mod batch;
 pub mod cli;
 pub mod demo;
 pub mod design_file;

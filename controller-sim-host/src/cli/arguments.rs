@@ -40,6 +40,8 @@ pub(super) enum Command {
     Assess(super::assess::AssessArguments),
     /// Writes a designed loop for the target: Rust constants
     Export(super::export::ExportArguments),
+    /// Designs loops for many plants by many rules and compares them
+    Batch(super::batch::BatchArguments),
     /// Computes the tables of the papers again: printed, true, ours, verdict
     Reproduce(ReproduceArguments),
     /// Prints the completions for a shell

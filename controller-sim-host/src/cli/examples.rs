@@ -10,6 +10,7 @@ Examples:
   controller-sim export loop.toml --format rust  a loop for the target
   controller-sim demo --list                     everything that is built in
   controller-sim identify step.csv               a model from a recorded step
+  controller-sim batch --set ah134               ten rules on 134 processes
 
 In the source tree write `cargo sim` for `controller-sim`.
 
@@ -114,6 +115,29 @@ Examples:
 
 Printed is what the paper says, true what an independent computation gives, ours what this program gives; the verdict
 is about the paper. Exit code 1: ours differs from true by more than the tolerance of a cell.";
+
+pub(super) const BATCH: &str = "\
+Examples:
+  controller-sim batch --set ah134                                    ten rules on 134 processes
+  controller-sim batch --set ah134 --methods pi-ms,dob --ms 1.2,1.4,2.0 --noise-ratio 2,10 --out rows.csv
+  controller-sim batch --set ah134 --list > my.csv                    the processes, to change them
+  controller-sim batch --processes my.csv --methods momi,de-momi --out rows.parquet
+  controller-sim batch --processes my.csv --out rows.csv --resume     go on after an interruption
+  controller-sim batch --processes my.csv --shard 2/4 --out part2.csv
+  controller-sim batch merge part*.csv --out rows.csv
+
+Margins and indices are those of the continuous loop, exact but for de-momi with a reduced model and adrc: these are
+simulated sampled with two periods and extrapolated. With `--ts` all are those of the sampled loop as it runs. The rows do
+not depend on the number of threads, on interruptions or on shards.
+
+Exit codes: 0 done, also when rules refuse some plants (each row says why); 3 when no row has a result; 2 bad lists.";
+
+pub(super) const BATCH_MERGE: &str = "\
+Examples:
+  controller-sim batch merge part1.csv part2.csv --out rows.csv
+  controller-sim batch merge part*.parquet --out rows.parquet
+
+Rows that are missing or there twice, and shards of different studies, are refused: exit code 2.";
 
 pub(super) const COMPLETIONS: &str = "\
 Examples:

@@ -8,6 +8,9 @@ use std::path::Path;
 /// Longest text, in bytes: a scenario is written by a person.
 const LONGEST: u64 = 16 << 20;
 
+/// Longest list of processes, in bytes.
+const LONGEST_LIST: u64 = 256 << 20;
+
 /// Longest log, in bytes.
 const LONGEST_LOG: u64 = 512 << 20;
 
@@ -33,9 +36,25 @@ const LOG: Kind = Kind {
     pipe: "to read from a pipe, give `-`",
 };
 
+const PROCESSES: Kind = Kind {
+    name: "list of processes",
+    longest: LONGEST_LIST,
+    missing: "`controller-sim batch --set ah134 --list > my.csv` writes one to begin with",
+    pipe: "write it to a file first",
+};
+
 /// The name and the text of the scenario at `path`; `-` is the standard input.
 pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
-    let (name, bytes) = load(path, &SCENARIO)?;
+    read_text(path, &SCENARIO)
+}
+
+/// The name and the text of the list of processes at `path`.
+pub(super) fn read_processes(path: &Path) -> Result<(String, String), Problem> {
+    read_text(path, &PROCESSES)
+}
+
+fn read_text(path: &Path, kind: &Kind) -> Result<(String, String), Problem> {
+    let (name, bytes) = load(path, kind)?;
     match String::from_utf8(bytes) {
         Ok(text) => Ok((name, text)),
         Err(error) => {

@@ -5,9 +5,6 @@ use crate::output::Problem;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::path::Path;
 
-/// Commands that are planned, and none yet.
-const LATER: [&str; 1] = ["batch"];
-
 /// What is to be said of a wrong argument instead of the parser's own words, when there is something better.
 pub(super) fn better(error: &clap::Error) -> Option<Problem> {
     let unknown = match error.kind() {
@@ -16,12 +13,6 @@ pub(super) fn better(error: &clap::Error) -> Option<Problem> {
         _ => return None,
     };
     let Some(ContextValue::String(word)) = error.get(unknown) else { return None };
-    if LATER.contains(&&**word) {
-        let message = format!("the command `{word}` is not in this version");
-        return Some(
-            Problem::new("usage", message).help("the main one is `run`; `controller-sim --help` shows all"),
-        );
-    }
     let is_scenario = word == "-" || word.ends_with(".toml") || Path::new(word).is_file();
     is_scenario.then(|| {
         let message = format!("`{word}` is no command");

@@ -177,7 +177,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     bounded(text, |x| x > 0.0 && x <= 1e15, "above 0, at most 1e15")
 }
 
-fn sensitivity(text: &str) -> Result<f64, String> {
+pub(super) fn sensitivity(text: &str) -> Result<f64, String> {
     bounded(text, |x| (1.001..=100.0).contains(&x), "1.001 to 100")
 }
 

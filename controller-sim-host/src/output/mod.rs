@@ -6,6 +6,7 @@
 mod advice;
 pub(crate) mod analysis;
 mod assessment;
+mod batched;
 mod csv;
 mod design;
 mod design_json;
@@ -25,6 +26,7 @@ pub use self::parquet::ParquetWriter;
 pub use advice::{advice_json, advice_table};
 pub use analysis::{Analysed, analysis_json, analysis_table};
 pub use assessment::{assessment_json, assessment_table};
+pub use batched::{Batched, batch_json, batch_table};
 pub use csv::CsvWriter;
 pub use design::design_table;
 pub use design_json::design_json;

@@ -2,6 +2,7 @@
 
 mod analyze;
 mod assess;
+mod batch;
 mod design;
 mod export;
 mod faults;

@@ -1,0 +1,131 @@
+//! All rows of a study, on several threads, in their order.
+
+use super::evaluate::Evaluator;
+use super::row::Row;
+use super::study::Study;
+use crate::simulate::Control;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::thread;
+
+/// Plants that may be done before the first one that is not: rows are held back in memory until their turn.
+const AHEAD: usize = 64;
+
+/// It was stopped before the last row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stopped;
+
+/// What the threads share.
+struct Queue {
+    /// The next plant to be taken.
+    next: usize,
+    /// The next one to be given out.
+    due: usize,
+    /// Those that are done before their turn.
+    done: BTreeMap<usize, Vec<Row>>,
+    ended: bool,
+}
+
+/// Ends the work when a thread panics: nobody waits for its rows.
+struct Guard<'a> {
+    queue: &'a Mutex<Queue>,
+    changed: &'a Condvar,
+}
+
+impl Drop for Guard<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.queue.lock().unwrap_or_else(PoisonError::into_inner).ended = true;
+            self.changed.notify_all();
+        }
+    }
+}
+
+/// Makes the rows in `range`, from 0, on `jobs` threads and gives them to `take` in their order, those of a plant together;
+/// `done` counts them. What is computed depends neither on the threads nor on the range.
+///
+/// # Errors
+/// [`Stopped`] by `control`, the rows up to then given; whatever `take` reports ends it as well.
+pub fn work<E: From<Stopped>>(
+    study: &Study,
+    range: Range<usize>,
+    jobs: usize,
+    control: &Control,
+    done: &AtomicU64,
+    mut take: impl FnMut(Vec<Row>) -> Result<(), E>,
+) -> Result<(), E> {
+    let points = study.points();
+    if range.is_empty() || points.is_empty() {
+        return Ok(());
+    }
+    let name = study.name();
+    let (first, last) = (range.start / points.len(), (range.end - 1) / points.len());
+    let queue = Mutex::new(Queue { next: first, due: first, done: BTreeMap::new(), ended: false });
+    let changed = Condvar::new();
+    let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
+    let rows_of = |index: usize| {
+        let mut evaluator = Evaluator::new(study, &name, &study.plants[index]);
+        let mut rows = Vec::new();
+        for (i, point) in points.iter().enumerate() {
+            let number = index * points.len() + i;
+            if !range.contains(&number) {
+                continue;
+            }
+            if control.is_stopped() {
+                break;
+            }
+            rows.push(evaluator.row(number + 1, *point));
+            done.fetch_add(1, Ordering::Relaxed);
+        }
+        rows
+    };
+    let worker = || {
+        let _guard = Guard { queue: &queue, changed: &changed };
+        loop {
+            let index = {
+                let mut queue = lock();
+                while !queue.ended && queue.next <= last && queue.next > queue.due + AHEAD {
+                    queue = changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
+                }
+                if queue.ended || queue.next > last {
+                    return;
+                }
+                queue.next += 1;
+                queue.next - 1
+            };
+            let rows = rows_of(index);
+            lock().done.insert(index, rows);
+            changed.notify_all();
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..jobs.clamp(1, last - first + 1) {
+            scope.spawn(worker);
+        }
+        let result = (first..=last).try_for_each(|index| {
+            let rows = {
+                let mut queue = lock();
+                loop {
+                    if let Some(rows) = queue.done.remove(&index) {
+                        queue.due = index + 1;
+                        break rows;
+                    }
+                    if queue.ended {
+                        // The panic of the thread goes on when the scope ends.
+                        return Err(E::from(Stopped));
+                    }
+                    queue = changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
+                }
+            };
+            changed.notify_all();
+            // Those that were finished count, also of a plant that was not.
+            take(rows)?;
+            if control.is_stopped() { Err(E::from(Stopped)) } else { Ok(()) }
+        });
+        lock().ended = true;
+        changed.notify_all();
+        result
+    })
+}
