@@ -1,10 +1,12 @@
-//! The speed of the simulation, beside a plain loop in Python with numpy, and that of the tuning rules ([`design`]).
+//! The speed of the simulation, beside a plain loop in Python with numpy, that of the tuning rules
+//! ([`design`]), and that of many plants by them ([`batch`]).
 //!
 //! Both compute the same loop (plant, controller, disturbance estimator); the integrals of the error show that they did.
 //! The time is that of the processor: other work on the machine disturbs it less than the clock. Runs of both sides
 //! alternate and the fastest of each are compared: what disturbs a run only ever makes it slower. That of the program is the
 //! time of its whole process, with reading the scenario and writing the result; that of Python is the loop's alone.
 
+mod batch;
 mod design;
 
 use std::path::{Path, PathBuf};
@@ -89,10 +91,9 @@ pub(crate) fn run(root: &Path) -> Outcome {
     println!("  10 substeps take {cost:.2} times as long as 1 (at most {MOST_SUBSTEPS})");
     let simulation = judge(ratio, cost);
     let rules = design::run(root, &python, &folder);
-    match (simulation, rules) {
-        (Err(one), Err(two)) => Err(format!("{one}; {two}")),
-        (one, two) => one.and(two),
-    }
+    let batch = batch::run(root, &python, &folder);
+    let faults: Vec<String> = [simulation, rules, batch].into_iter().filter_map(Result::err).collect();
+    if faults.is_empty() { Ok(()) } else { Err(faults.join("; ")) }
 }
 
 /// Whether the program is fast enough.
