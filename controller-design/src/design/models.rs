@@ -93,7 +93,8 @@ impl Job<'_> {
                     Some(RuleModel { gain, integrators: 0, a1: model.a1, a2: model.a2, dead_time });
                 // The half rule keeps real lags.
                 let (slow, fast) = model.time_constants().unwrap_or((model.a1, 0.0));
-                Simc::pid(gain, slow, fast, dead_time, tau_c)
+                // Two equal ones differ by a rounding error, in either direction.
+                Simc::pid(gain, slow, fast.min(slow), dead_time, tau_c)
             }
             HalfRule::Integrating(model) => {
                 self.integrating(&model);
