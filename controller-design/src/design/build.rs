@@ -60,11 +60,13 @@ pub fn design_with_areas(
     Setting { plant, measured, shared: &Shared::default() }.design(request)
 }
 
+/// A PI of `pi-ms`, or why there is none, by latency and `Ms`.
+type KnownPi = ([f64; 2], Result<PiMs, Refusal>);
+
 /// What designs for one plant have in common.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// By latency and `Ms`.
-    pis: RefCell<Vec<([f64; 2], Result<PiMs, Refusal>)>>,
+    pis: RefCell<Vec<KnownPi>>,
 }
 
 /// For what is designed.

@@ -29,7 +29,7 @@ pub(super) fn rest(a: &[Vec<f64>], b: &[f64], c: &[f64]) -> Option<(Vec<f64>, f6
         let pivot = (column..=n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
         rows.swap(column, pivot);
         let top = rows[column].clone();
-        if !(top[column].abs() > 1e-14) {
+        if top[column].is_nan() || top[column].abs() <= 1e-14 {
             return None;
         }
         for row in &mut rows[column + 1..] {
