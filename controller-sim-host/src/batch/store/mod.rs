@@ -77,7 +77,7 @@ fn journal(path: &Path, format: Format) -> PathBuf {
     }
 }
 
-/// Begins the file of the rows in `range` of a study.
+/// Begins the file of a study; `force` allows to replace one that exists.
 ///
 /// # Errors
 /// A file that exists and may not be replaced; what the system reports.
@@ -109,7 +109,7 @@ pub fn resume(
     let format = Format::of(path)?;
     let target = FileTarget::new(path, true)?;
     let journal = journal(path, format);
-    let begun = if journal.exists() { &journal } else { path };
+    let begun: &Path = if journal.exists() { &journal } else { path };
     if !begun.exists() {
         return create(path, false);
     }
@@ -131,7 +131,7 @@ pub fn resume(
         keep(&row);
         kept += 1;
     }
-    if begun != &journal {
+    if *begun != *journal {
         // A Parquet file was complete when it got its name.
         return if kept == range.len() {
             Ok(Begun { file: None, kept })
