@@ -2,7 +2,7 @@
 
 use crate::folder::{Folder, json, text};
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "export",
     "run",
     "demo",
@@ -11,6 +11,7 @@ const COMMANDS: [&str; 12] = [
     "identify",
     "analyze",
     "assess",
+    "batch",
     "reproduce",
     "completions",
     "man",
