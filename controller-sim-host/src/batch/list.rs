@@ -10,7 +10,7 @@
 //! let [one, other] = [(csv, Format::Csv), (toml, Format::Toml)].map(|(text, format)| read(text, format));
 //! assert_eq!(one, other);
 //! let faults = read("name,plant\nheater,1.98/(1+80.3*t)\n", Format::Csv).expect_err("there is no t");
-//! assert_eq!(faults[0].span, 32..33);
+//! assert_eq!(faults[0].span, 31..32);
 //! ```
 
 mod csv;
