@@ -13,7 +13,7 @@ use crate::shell::{Cmd, Outcome};
 const MANIFEST: &str = "fuzz/Cargo.toml";
 
 /// Seconds for one target in the ladder ..
-const SECONDS_PER_TARGET: u64 = 30;
+const SECONDS_PER_TARGET: u64 = 20;
 /// .. for so many targets; more of them share the same time, so that the ladder keeps its own.
 const FULL_SHARES: u64 = 5;
 
