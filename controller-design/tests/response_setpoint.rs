@@ -121,11 +121,10 @@ fn golden_responses_of_the_134_processes() {
         let process = list.iter().find(|process| process.name == cells[0]).expect("one of the 134");
         let pid = PidConfig { kp: x[0], ki: x[1], ..PidConfig::default() };
         let i = indices(&process.expression, &pid);
-        // The golden values come from piecewise linear signals, extrapolated: a few 1e-5 at the corners of |e|. Their TV is
-        // that of the samples, which miss the tops of the turns.
-        let ours = [i.iae, i.ise, i.itae, i.e_max, i.tv];
-        for ((ours, golden), tolerance) in ours.iter().zip(&x[3..]).zip([5e-4, 5e-4, 5e-4, 5e-4, 2e-3]) {
-            assert!((ours / golden - 1.0).abs() < tolerance, "{line}: {i:?}");
+        // The golden values come from piecewise linear signals, extrapolated: a few 1e-5 at the corners of |e|. Their TV is that
+        // of the samples, which miss the tops of the turns by up to 1e-4.
+        for (ours, golden) in [i.iae, i.ise, i.itae, i.e_max, i.tv].iter().zip(&x[3..]) {
+            assert!((ours / golden - 1.0).abs() < 5e-4, "{line}: {i:?}");
         }
         rows += 1;
     }

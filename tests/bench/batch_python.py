@@ -320,7 +320,10 @@ def simulated(process, kp, ki, alpha, load, finer):
         return response(process, kp, ki, alpha, load, STEPS * finer)
     if load:
         return chained_response(process, kp, ki, alpha, 2 * finer)
-    return delayed_response(process, kp, ki, alpha, load, POINTS * finer)
+    # A lag that is not longer than the step would hide the turns of the signals between the points.
+    shortest = min(process.lags + [process.dead_time])
+    points = max(POINTS, int(np.ceil(8.0 * process.dead_time / shortest)))
+    return delayed_response(process, kp, ki, alpha, load, points * finer)
 
 
 def peak(process, omega, kp, ki, alpha):
