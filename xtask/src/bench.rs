@@ -12,8 +12,8 @@ mod design;
 use std::path::{Path, PathBuf};
 
 use crate::long_runs::LongRun;
+use crate::program;
 use crate::python;
-use crate::rungs;
 use crate::shell::{Cmd, Outcome, target_dir};
 use crate::usage::measured;
 
@@ -40,7 +40,7 @@ const TOLERANCE: f64 = 0.005;
 /// Runs the benchmark and prints it; an error when the program or a rule is too slow, or the two sides computed different
 /// things.
 pub(crate) fn run(root: &Path) -> Outcome {
-    let program = rungs::program(root)?;
+    let program = program::shipped(root)?;
     let python = python::environment(root, "bench", REQUIREMENTS)?;
     let folder = target_dir(root).join("bench");
     let scenario = |name: &str, samples: u64| -> Outcome<PathBuf> {

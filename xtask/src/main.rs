@@ -45,6 +45,7 @@ mod no_panic;
 mod packages;
 mod pil;
 mod plc;
+mod program;
 mod python;
 mod report;
 mod rungs;
@@ -210,7 +211,7 @@ fn soak(root: &Path, minutes: u64) -> Outcome {
     same_bits::soak(root)?;
     swap::soak(root)?;
     pil::soak(root)?;
-    let program = rungs::program(root)?;
+    let program = program::shipped(root)?;
     memory::soak(&program, &rungs::TempFolder::new("soak")?.0)?;
     if minutes == 0 {
         println!("no fuzzing: --minutes 0");

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use crate::emulator;
 use crate::ladder::Done;
-use crate::rungs::{self, TempFolder};
+use crate::program;
+use crate::rungs::TempFolder;
 use crate::setup::{self, Part};
 use crate::shell::{Cmd, Outcome, target_dir};
 
@@ -72,7 +73,7 @@ pub(crate) fn bench(root: &Path) -> Outcome {
         println!("no processor in the loop: {message}");
         return Ok(());
     }
-    let program = rungs::program(root)?;
+    let program = program::shipped(root)?;
     let folder = TempFolder::new("pil-bench")?;
     let (board, _, precision) = RUNS[0];
     let mut seconds = [0.0; 2];
@@ -107,7 +108,7 @@ type Run = (&'static str, &'static str, &'static str);
 
 /// Runs every controller in each of `runs`; a remark and the traces when nothing differs.
 fn compare(root: &Path, runs: &[Run], samples: u64) -> Outcome<(String, Vec<(&'static str, Trace)>)> {
-    let program = rungs::program(root)?;
+    let program = program::checked(root)?;
     let folder = target_dir(root).join("pil");
     std::fs::create_dir_all(&folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     let file = folder.join(format!("{samples}.toml"));

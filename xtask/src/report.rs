@@ -6,7 +6,7 @@ use crate::browser::{self, CHECKS, Tools};
 use crate::ladder::Done;
 use crate::long_runs::LongRun;
 use crate::memory;
-use crate::rungs;
+use crate::program;
 use crate::shell::{Cmd, Outcome, target_dir};
 
 /// Where the scenarios are that come with the program, below the workspace root.
@@ -41,7 +41,7 @@ pub(crate) fn rung(root: &Path) -> Outcome<Done> {
         Ok(tools) => tools,
         Err(message) => return Ok(Done::Lacking(message)),
     };
-    let program = rungs::program(root)?;
+    let program = program::checked(root)?;
     let base = target_dir(root);
     let (pages, shots) = (emptied(&base.join("report-pages"))?, emptied(&base.join("report-shots"))?);
     let scratch = emptied(&base.join("report-scratch"))?;

@@ -12,11 +12,12 @@ use crate::manifest::Manifest;
 use crate::no_panic;
 use crate::pil;
 use crate::plc;
+use crate::program;
 use crate::python;
 use crate::report;
 use crate::same_bits;
 use crate::setup::{self, Part, Toolchain};
-use crate::shell::{Cmd, Outcome, in_ci, target_dir};
+use crate::shell::{Cmd, Outcome, in_ci};
 use crate::size;
 use crate::swap;
 
@@ -81,9 +82,6 @@ const DESIGN: &str = "controller-design";
 
 /// The target without a floating-point unit: what builds for it builds for the others.
 const SMALLEST: &str = "thumbv6m-none-eabi";
-
-/// The host program.
-const PROGRAM: &str = "controller-sim";
 
 /// What the demo must show.
 const DEMO_NAMES: [&str; 3] = ["MOMI", "DRMO", "DE-MOMI"];
@@ -150,6 +148,7 @@ fn test(root: &Path) -> Outcome<Done> {
         lacking.extend(python::structured_text(root));
     }
     Cmd::cargo(root).args(["test", "--workspace"]).run()?;
+    program::tested();
     if !lacking.is_empty() {
         return Ok(Done::Lacking(lacking.join("; ")));
     }
@@ -222,15 +221,8 @@ fn dependencies(root: &Path) -> Outcome<Done> {
     Ok(Done::Passed(format!("{plain} crates, all allowed; {all} with all features")))
 }
 
-/// Builds the program as it is shipped; gives its path. It is built in the workspace and started anywhere: outside of
-/// the workspace cargo would choose another toolchain.
-pub(crate) fn program(root: &Path) -> Outcome<PathBuf> {
-    Cmd::cargo(root).args(["build", "--release", "-p", "controller-sim-host"]).run()?;
-    Ok(target_dir(root).join("release").join(format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX)))
-}
-
 fn demo(root: &Path) -> Outcome<Done> {
-    let program = program(root)?;
+    let program = program::checked(root)?;
     let folder = TempFolder::new("demo")?;
     let output = Cmd::new(&program, &folder.0).env("NO_COLOR", "1").capture()?;
     print!("{output}");

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::field;
-use crate::rungs;
+use crate::program;
 use crate::shell::{Cmd, Outcome};
 
 /// The batch in Python, below the workspace root.
@@ -59,7 +59,7 @@ pub(super) fn run(root: &Path, python: &Path, folder: &Path) -> Outcome {
     );
     let mut faults = Vec::new();
     faults.extend(judge(ratio, [mine, other]));
-    let program = rungs::program(root)?;
+    let program = program::shipped(root)?;
     let mut best = [f64::INFINITY; 2];
     for _ in 0..REPETITIONS {
         for (jobs, best) in ["1", "2"].into_iter().zip(&mut best) {
