@@ -4,7 +4,8 @@ mod sensitivity;
 
 use controller_core::PidConfig;
 use controller_design::areas::Areas;
-use controller_design::model::TransferFunction;
+use controller_design::design::{Law, Method, Request, design};
+use controller_design::model::{TransferFunction, parse};
 use controller_design::rules::amigo::Amigo;
 use controller_design::rules::reduction::Reduced;
 use controller_design::rules::simc::Simc;
@@ -138,5 +139,24 @@ fn wishes_beyond_the_rules_are_told_or_refused() {
         Amigo::integrating_pid(1e-200, 1e-200),
     ] {
         assert!(!refused.unwrap_err().help().is_empty());
+    }
+}
+
+/// Equal lags, whose time constants come back from the sum and the product with an error of the size of the square root of
+/// the rounding, on either side of being complex.
+#[test]
+fn simc_takes_two_equal_lags() {
+    for (n, factor) in (1..60).flat_map(|n| [(n, true), (n, false)]) {
+        let tau = 0.237 * f64::from(n);
+        let lags =
+            if factor { format!("(1+{tau}*s)^2") } else { format!("(1+{}*s+{}*s^2)", 2.0 * tau, tau * tau) };
+        let plant = parse(&format!("3*exp(-s)/{lags}")).unwrap();
+        let made = design(&plant, &Request::new(Method::Simc, 1e-3)).unwrap();
+        let Law::Pid { pid, .. } = made.law else { panic!("a PID") };
+        let (kc, ti) = (tau / 6.0, tau.min(8.0));
+        let (kp, ki, kd) = (kc * (1.0 + tau / ti), kc / ti, kc * tau);
+        for (ours, exact) in [(pid.kp, kp), (pid.ki, ki), (pid.kd, kd)] {
+            assert!((ours / exact - 1.0).abs() < 1e-7, "{tau}: {ours} {exact}");
+        }
     }
 }
