@@ -9,8 +9,10 @@
 //! let toml = "[[process]]\nname = \"heater\"\nplant = \"1.98*exp(-3.2*s)/(1+80.3*s)\"\n";
 //! let [one, other] = [(csv, Format::Csv), (toml, Format::Toml)].map(|(text, format)| read(text, format));
 //! assert_eq!(one, other);
-//! let faults = read("name,plant\nheater,1.98/(1+80.3*t)\n", Format::Csv).expect_err("there is no t");
-//! assert_eq!(faults[0].span, 31..32);
+//! let one_is_wrong = format!("{csv}other,1.98/(1+80.3*t)\n");
+//! let list = read(&one_is_wrong, Format::Csv).expect("the other can be read");
+//! assert!(list.plants[0].plant.is_ok() && list.plants[1].plant.is_err());
+//! assert_eq!(&one_is_wrong[list.faults[0].span.clone()], "t");
 //! ```
 
 mod csv;
@@ -39,25 +41,34 @@ pub struct NamedPlant {
     pub family: String,
     /// As it was written.
     pub expression: String,
-    /// What that means.
-    pub plant: TransferFunction,
+    /// What that means, or why it means nothing: its rows say so, those of the others come all the same.
+    pub plant: Result<TransferFunction, String>,
+}
+
+/// What a file says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct List {
+    /// Its processes in order.
+    pub plants: Vec<NamedPlant>,
+    /// What is wrong with plants of them, and where.
+    pub faults: Vec<Fault>,
 }
 
 impl NamedPlant {
-    /// The sampling period for the noise gains of rules that limit them \[s\]: at most a fiftieth of the dead time with all
-    /// lags but the two slowest and all zeros in the right half-plane, at most a two-hundredth of the sum of all times, of the
-    /// series 1, 2, 5.
+    /// The sampling period of `plant` for the noise gains of rules that limit them \[s\]: at most a fiftieth of the dead time
+    /// with all lags but the two slowest and all zeros in the right half-plane, at most a two-hundredth of the sum of all
+    /// times, of the series 1, 2, 5.
     #[must_use]
-    pub fn period(&self) -> f64 {
+    pub fn period(plant: &TransferFunction) -> f64 {
         let times = |roots: Vec<controller_design::model::Complex>| -> Vec<(f64, bool)> {
             let sizes = roots.iter().map(|root| (root.abs(), root.re > 0.0)).filter(|(size, _)| *size > 0.0);
             sizes.map(|(size, is_right)| (size.recip(), is_right)).collect()
         };
-        let mut lags: Vec<f64> = times(self.plant.poles()).into_iter().map(|(time, _)| time).collect();
+        let mut lags: Vec<f64> = times(plant.poles()).into_iter().map(|(time, _)| time).collect();
         lags.sort_by(|a, b| b.total_cmp(a));
-        let right = times(self.plant.zeros()).into_iter().filter(|(_, is_right)| *is_right);
-        let hidden = self.plant.dead_time() + right.map(|(time, _)| time).sum::<f64>();
-        let kept = 2_usize.saturating_sub(self.plant.integrators());
+        let right = times(plant.zeros()).into_iter().filter(|(_, is_right)| *is_right);
+        let hidden = plant.dead_time() + right.map(|(time, _)| time).sum::<f64>();
+        let kept = 2_usize.saturating_sub(plant.integrators());
         let delay = hidden + lags.iter().skip(kept).sum::<f64>();
         let whole = hidden + lags.iter().sum::<f64>();
         let wanted = match (delay > 0.0, whole > 0.0) {
@@ -73,7 +84,7 @@ impl NamedPlant {
 #[must_use]
 pub fn ah134() -> Vec<NamedPlant> {
     let named = |process: batch134::Process| {
-        let plant = process.plant().ok()?;
+        let plant = Ok(process.plant().ok()?);
         let batch134::Process { name, family, expression, .. } = process;
         Some(NamedPlant { name, family: family.name.to_owned(), expression, plant })
     };
@@ -92,8 +103,9 @@ pub enum Format {
 /// Reads a list.
 ///
 /// # Errors
-/// All that is wrong with it, in the order of the text; an empty list is wrong, too.
-pub fn read(text: &str, format: Format) -> Result<Vec<NamedPlant>, Vec<Fault>> {
+/// All that is wrong with it, in the order of the text, when that is more than plants that mean nothing, or when no plant means
+/// anything; an empty list is wrong, too.
+pub fn read(text: &str, format: Format) -> Result<List, Vec<Fault>> {
     let mut faults = Vec::new();
     let entries = match format {
         Format::Csv => csv::entries(text, &mut faults),
@@ -108,9 +120,13 @@ pub fn read(text: &str, format: Format) -> Result<Vec<NamedPlant>, Vec<Fault>> {
         faults.push(Fault::new(code::TOO_LARGE, entries[MOST].name.span.clone(), message));
         return Err(faults);
     }
-    let plants = named(entries, &mut faults);
+    let List { plants, faults: of_plants } = named(entries, &mut faults);
+    if faults.is_empty() && plants.iter().any(|plant| plant.plant.is_ok()) {
+        return Ok(List { plants, faults: of_plants });
+    }
+    faults.extend(of_plants);
     faults.sort_by_key(|fault| fault.span.start);
-    if faults.is_empty() { Ok(plants) } else { Err(faults) }
+    Err(faults)
 }
 
 /// A text and where it stands.
@@ -129,9 +145,10 @@ struct Entry {
     family: Option<Cell>,
 }
 
-fn named(entries: Vec<Entry>, faults: &mut Vec<Fault>) -> Vec<NamedPlant> {
+fn named(entries: Vec<Entry>, faults: &mut Vec<Fault>) -> List {
     let mut known: HashMap<String, Range<usize>> = HashMap::new();
     let mut plants = Vec::with_capacity(entries.len());
+    let mut of_plants = Vec::new();
     for Entry { name, plant, family } in entries {
         for (what, cell) in [("name", Some(&name)), ("family", family.as_ref())] {
             let Some(cell) = cell else { continue };
@@ -150,24 +167,23 @@ fn named(entries: Vec<Entry>, faults: &mut Vec<Fault>) -> Vec<NamedPlant> {
         } else {
             known.insert(name.value.clone(), name.span.clone());
         }
-        match parse(&plant.value) {
-            Ok(found) => plants.push(NamedPlant {
-                name: name.value,
-                family: family.map_or_else(String::new, |cell| cell.value),
-                expression: plant.value,
-                plant: found,
-            }),
-            Err(errors) => faults.extend(errors.into_iter().map(|error| {
+        let found = parse(&plant.value).map_err(|errors| {
+            let why: Vec<&str> = errors.iter().map(|error| &*error.message).collect();
+            let why = format!("the plant means nothing: {}", why.join("; "));
+            of_plants.extend(errors.iter().map(|error| {
                 let at = |from: usize| from + error.span.start..from + error.span.end;
                 let span = plant.inside.map_or(plant.span.clone(), at);
                 Fault {
                     help: error.help.clone(),
                     ..Fault::new(code::EXPRESSION, span, error.message.clone())
                 }
-            })),
-        }
+            }));
+            why
+        });
+        let family = family.map_or_else(String::new, |cell| cell.value);
+        plants.push(NamedPlant { name: name.value, family, expression: plant.value, plant: found });
     }
-    plants
+    List { plants, faults: of_plants }
 }
 
 #[cfg(test)]
@@ -178,8 +194,7 @@ mod tests {
     fn the_period_follows_what_a_loop_cannot_hasten() {
         let of = |text: &str| {
             let plant = parse(text).expect("a plant");
-            NamedPlant { name: String::new(), family: String::new(), expression: String::new(), plant }
-                .period()
+            NamedPlant::period(&plant)
         };
         // A fiftieth of the dead time; of the two lags that are left; a two-hundredth of the whole.
         let texts =

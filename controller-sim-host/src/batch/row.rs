@@ -94,7 +94,7 @@ pub enum Status {
     Ok,
     /// The rule has no design for the plant.
     Refused,
-    /// Designed, but its responses could not be computed.
+    /// Its plant means nothing, or it is designed but its responses could not be computed.
     Failed,
 }
 

@@ -149,7 +149,7 @@ pub(super) struct DesignArguments {
     /// The tuning rule; `advise` compares all of them on the plant
     #[arg(long, value_parser = Rule::parser())]
     pub(super) method: Rule,
-    /// Sampling period \[s\]; if not given, a round one about 200 times shorter than the plant's response
+    /// Sampling period [s]; if not given, a round one about 200 times shorter than the plant's response
     #[arg(long, value_name = "S", value_parser = super::wish::positive)]
     pub(super) ts: Option<f64>,
     #[command(flatten)]

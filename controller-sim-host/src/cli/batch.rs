@@ -1,10 +1,12 @@
 //! `batch`: many plants by many rules.
 
-use super::{EXIT_REFUSED, EXIT_STOPPED, Failure, examples, input, interrupt, print, progress, wish};
-use crate::batch::list::{self, Format, NamedPlant};
+use super::{
+    EXIT_REFUSED, EXIT_STOPPED, Failure, colours, examples, input, interrupt, print, progress, wish,
+};
+use crate::batch::list::{self, Format, List, NamedPlant};
 use crate::batch::store::{self, Begun, RowFile};
 use crate::batch::{Row, Shard, Stopped, Study, Summary, work};
-use crate::output::{Batched, Problem, Trouble, batch_json, batch_table, is_same_file};
+use crate::output::{Batched, Problem, Trouble, batch_json, batch_table, is_same_file, render_all};
 use crate::scenario::SourceText;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Subcommand, ValueEnum, ValueHint};
@@ -48,7 +50,7 @@ pub(super) struct BatchArguments {
     /// Noise gains with the observer over that of the PI alone, above 1 (dob); if not given, the rule chooses one
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = ratio)]
     noise_ratio: Vec<f64>,
-    /// Simulate the sampled loop with this period \[s\]; if not given, margins and indices are of the continuous loop
+    /// Simulate the sampled loop with this period [s]; if not given, margins and indices are of the continuous loop
     #[arg(long, value_name = "S", value_parser = wish::positive)]
     ts: Option<f64>,
     /// Write the rows to this file as they come, .csv or .parquet
@@ -201,14 +203,11 @@ fn stopped(file: Option<&RowFile>, summary: &Summary, total: usize) -> Failure {
     Failure { troubles: vec![Problem::new("stopped", message).into()], code: EXIT_STOPPED }
 }
 
-/// Prints what it comes to; without any row that is ok the exit code says so.
+/// Prints what it comes to; the exit code says whether rows are without a result.
 fn show(made: &Batched<'_>, json: bool) -> Result<(), Failure> {
     print(&if json { batch_json(made) } else { batch_table(made) })?;
-    if made.summary.counts()[0] > 0 {
-        Ok(())
-    } else {
-        Err(Failure { troubles: Vec::new(), code: EXIT_REFUSED })
-    }
+    let [_, refused, failed] = made.summary.counts();
+    if refused + failed == 0 { Ok(()) } else { Err(Failure { troubles: Vec::new(), code: EXIT_REFUSED }) }
 }
 
 /// What is wrong with the lists, all at once.
@@ -253,8 +252,17 @@ fn plants(arguments: &BatchArguments) -> Result<Vec<NamedPlant>, Failure> {
     let Some(path) = &arguments.processes else { return Ok(list::ah134()) };
     let format = format(path)?;
     let (name, text) = input::read_processes(path)?;
-    list::read(&text, format)
-        .map_err(|faults| Failure::input(vec![Trouble::Scenario(SourceText { name, text }, faults)]))
+    let read = list::read(&text, format);
+    let trouble = |faults| vec![Trouble::Scenario(SourceText { name, text }, faults)];
+    match read {
+        Err(faults) => Err(Failure::input(trouble(faults))),
+        Ok(List { plants, faults }) => {
+            if !faults.is_empty() {
+                eprint!("{}\n", render_all(&trouble(faults), colours()));
+            }
+            Ok(plants)
+        }
+    }
 }
 
 fn format(path: &Path) -> Result<Format, Problem> {

@@ -118,19 +118,22 @@ is about the paper. Exit code 1: ours differs from true by more than the toleran
 
 pub(super) const BATCH: &str = "\
 Examples:
-  controller-sim batch --set ah134                                    ten rules on 134 processes
-  controller-sim batch --set ah134 --methods pi-ms,dob --ms 1.2,1.4,2.0 --noise-ratio 2,10 --out rows.csv
-  controller-sim batch --set ah134 --list > my.csv                    the processes, to change them
+  controller-sim batch --set ah134                                  ten rules on 134 processes
+  controller-sim batch --set ah134 --methods pi-ms,dob --ms 1.2,2.0 --noise-ratio 2 --out rows.csv
+  controller-sim batch --set ah134 --list > my.csv                  the processes, to change them
   controller-sim batch --processes my.csv --methods momi,de-momi --out rows.parquet
-  controller-sim batch --processes my.csv --out rows.csv --resume     go on after an interruption
+  controller-sim batch --processes my.csv --out rows.csv --resume   go on after an interruption
   controller-sim batch --processes my.csv --shard 2/4 --out part2.csv
   controller-sim batch merge part*.csv --out rows.csv
 
-Margins and indices are those of the continuous loop, exact but for de-momi with a reduced model and adrc: these are
-simulated sampled with two periods and extrapolated. With `--ts` all are those of the sampled loop as it runs. The rows do
-not depend on the number of threads, on interruptions or on shards.
+Margins and indices are those of the continuous loop, exact but for de-momi with a reduced model
+and adrc: these are simulated sampled with two periods and extrapolated. With `--ts` all are those
+of the sampled loop as it runs. The rows do not depend on the number of threads, on interruptions
+or on shards.
 
-Exit codes: 0 done, also when rules refuse some plants (each row says why); 3 when no row has a result; 2 bad lists.";
+Exit codes: 0 every row has a result; 3 all rows are there, but some have none (refused by a rule,
+or a plant that means nothing): each says why, and the summary counts them; 2 bad lists, nothing
+is written.";
 
 pub(super) const BATCH_MERGE: &str = "\
 Examples:

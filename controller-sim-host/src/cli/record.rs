@@ -29,7 +29,7 @@ pub(super) struct Columns {
     /// Column of the controller's output, the input of the process
     #[arg(long, value_name = "COL")]
     pub(super) input: Option<String>,
-    /// The rows are this far apart \[s\]: for a log without times
+    /// The rows are this far apart [s]: for a log without times
     #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "time")]
     pub(super) log_ts: Option<f64>,
     /// The controller, when a file of `run --csv` has several
@@ -112,7 +112,7 @@ impl Recorded {
         Ok(at)
     }
 
-    /// The first sample that the column of modes has in automatic after the step at `step` \[s\]; `None` when there are no
+    /// The first sample that the column of modes has in automatic after the step at `step` [s]; `None` when there are no
     /// modes or the step was not in manual.
     pub(super) fn back_in_auto(&self, step: f64) -> Option<usize> {
         let at = self.modes.partition_point(|(t, _)| *t < step);

@@ -25,13 +25,13 @@ pub(super) struct StepLog {
     /// Column of the process output: what is measured
     #[arg(long, value_name = "COL")]
     output: Option<String>,
-    /// The rows are this far apart \[s\]: for a log without times
+    /// The rows are this far apart [s]: for a log without times
     #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "time")]
     log_ts: Option<f64>,
 }
 
 impl StepLog {
-    /// The file's text and what it says; with `--log-ts` or `rows` they are so far apart \[s\] and have no times.
+    /// The file's text and what it says; with `--log-ts` or `rows` they are so far apart [s] and have no times.
     pub(super) fn read(&self, rows: Option<f64>) -> Result<(SourceText, Log), Failure> {
         let (name, text) = input::read_log(&self.log)?;
         let source = SourceText { name, text };

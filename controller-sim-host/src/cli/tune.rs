@@ -37,7 +37,7 @@ pub(super) struct TuneArguments {
     /// The tuning rule
     #[arg(long, value_parser = Rule::parser(), default_value = "de-momi")]
     method: Rule,
-    /// Sampling period of the controller \[s\]; if not given, the usual distance of the log's rows (`--log-ts`)
+    /// Sampling period of the controller [s]; if not given, the usual distance of the log's rows (`--log-ts`)
     #[arg(long, value_name = "S", value_parser = positive)]
     ts: Option<f64>,
     #[command(flatten)]

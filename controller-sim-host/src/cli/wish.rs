@@ -8,14 +8,14 @@ use controller_design::model::TransferFunction;
 /// What is asked of a design.
 #[derive(Debug, Default, Args)]
 pub(super) struct Wish {
-    /// Time constant of the PID's filter \[s\]
+    /// Time constant of the PID's filter [s]
     #[arg(long, value_name = "S", value_parser = time, conflicts_with = "kpidn")]
     tf: Option<f64>,
     /// Noise gain of the PID at a quarter of the sampling frequency [u/y]; default 4/|K|, or what is attainable (momi,
     /// drmo, de-momi), or what a filter of a tenth of the derivative time leaves (ah, amigo, simc)
     #[arg(long, value_name = "G", value_parser = positive)]
     kpidn: Option<f64>,
-    /// Time constant of the disturbance estimator's filter \[s\] (de-momi)
+    /// Time constant of the disturbance estimator's filter [s] (de-momi)
     #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "kden")]
     tfd: Option<f64>,
     /// Noise gain of the disturbance estimator [u/y] (de-momi); default: that of the PID
@@ -30,7 +30,7 @@ pub(super) struct Wish {
     /// Noise gain with the observer over that of the PI alone, above 1 (dob)
     #[arg(long, value_name = "B", value_parser = positive, conflicts_with_all = ["alpha", "want"])]
     noise_ratio: Option<f64>,
-    /// Time constant of the observer's filter \[s\] (dob)
+    /// Time constant of the observer's filter [s] (dob)
     #[arg(long, value_name = "S", value_parser = positive, conflicts_with = "want")]
     alpha: Option<f64>,
     /// Index after a unit load to choose the observer's filter for (dob): iae, ise, itae, e_max, or ramp_ie for a ramp
@@ -40,10 +40,10 @@ pub(super) struct Wish {
     /// `search` the one with the most integral gain within --ms; default: model, in a comparison search
     #[arg(long, value_name = "model|search|G", value_parser = gain, allow_negative_numbers = true)]
     b0: Option<Gain>,
-    /// Time constant of the closed loop \[s\] (simc); default: the dead time
+    /// Time constant of the closed loop [s] (simc); default: the dead time
     #[arg(long, value_name = "S", value_parser = positive)]
     tau_c: Option<f64>,
-    /// From reading the measurement to acting with the output \[s\]
+    /// From reading the measurement to acting with the output [s]
     #[arg(long, value_name = "S", value_parser = time, default_value_t = 0.0)]
     pub(super) latency: f64,
     /// What the controller is called in the design file; default: the method

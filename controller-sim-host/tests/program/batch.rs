@@ -110,7 +110,14 @@ fn files_do_not_depend_on_how_they_were_made() {
     folder.write("list.csv", LIST);
     let study =
         ["batch", "--processes", "list.csv", "--methods", METHODS, "--ms", "1.2,2", "--noise-ratio", "2"];
-    let run = |more: &[&str]| folder.done(&[&study[..], more].concat());
+    // Some rules refuse some plants: the exit code says so, of a whole as of a part.
+    let some = |arguments: &[&str]| {
+        let output = folder.run(arguments);
+        assert_eq!(text(&output.stderr), "", "{arguments:?}");
+        assert!(matches!(output.status.code(), Some(0 | 3)), "{arguments:?}");
+        text(&output.stdout).to_owned()
+    };
+    let run = |more: &[&str]| some(&[&study[..], more].concat());
     for kind in ["csv", "parquet"] {
         let name = |stem: &str| format!("{stem}.{kind}");
         run(&["--jobs", "1", "--out", &name("one")]);
@@ -122,7 +129,7 @@ fn files_do_not_depend_on_how_they_were_made() {
             run(&["--shard", &format!("{}/3", i + 1), "--out", part]);
         }
         let shuffled = ["batch", "merge", &parts[2], &parts[0], &parts[1], "--out", &name("merged")];
-        folder.done(&shuffled);
+        some(&shuffled);
         assert!(whole == folder.bytes(&name("merged")), "{kind}: shards");
         let missing = folder.refused(&["batch", "merge", &parts[2], &parts[0], "--out", &name("x")]);
         assert!(missing.contains("of 30 are in none of the files"), "{missing}");
@@ -140,7 +147,7 @@ fn files_do_not_depend_on_how_they_were_made() {
         assert!(!folder.names().contains(&name("x")));
     }
     // Tables and Parquet files mix.
-    folder.done(&["batch", "merge", "part1.csv", "part2.parquet", "part3.csv", "--out", "mixed.csv"]);
+    some(&["batch", "merge", "part1.csv", "part2.parquet", "part3.csv", "--out", "mixed.csv"]);
     let whole = folder.read("one.csv");
     assert!(whole == folder.read("mixed.csv"));
     // Cut anywhere: in the first line, in the middle of a row, at the end of one, inside of a name.
@@ -195,6 +202,40 @@ fn refused_plants_say_why() {
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     assert!(text(&output.stdout).contains("refused pi-ms, u: "), "{}", text(&output.stdout));
     assert!(folder.read("bad.csv").contains(",refused,"));
+}
+
+/// A plant that means nothing has rows that say why, and its place is told; those of the others are as without it.
+#[test]
+fn plants_that_mean_nothing_stop_nobody() {
+    let folder = Folder::new("batch-meaningless");
+    folder.write(
+        "list.csv",
+        "name,plant\na,exp(-s)/(1+2*s)\nb,1/(1+s\nc,exp(-s)/(1+s)*q\nd,2*exp(-s)/(1+s)^2\n",
+    );
+    let study = ["batch", "--processes", "list.csv", "--methods", "pi-ms,simc"];
+    let output = folder.run(&[&study[..], &["--out", "rows.csv"]].concat());
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+    for part in ["list.csv:3", "list.csv:4", "never closed", "`q`"] {
+        assert!(text(&output.stderr).contains(part), "{part}: {}", text(&output.stderr));
+    }
+    assert!(
+        text(&output.stdout).starts_with("8 rows: 4 ok, 0 refused, 4 failed"),
+        "{}",
+        text(&output.stdout)
+    );
+    let rows = table(&folder.read("rows.csv"));
+    for row in &rows {
+        let is_wrong = ["b", "c"].contains(&&*row["process"]);
+        assert_eq!(row["status"], if is_wrong { "failed" } else { "ok" }, "{row:?}");
+        assert_eq!(row["reason"].starts_with("the plant means nothing: "), is_wrong, "{row:?}");
+        assert_eq!(row["kp"].is_empty(), is_wrong, "{row:?}");
+    }
+    let json = json(&folder.run(&[&study[..], &["--json"]].concat()));
+    assert_eq!(json["counts"], serde_json::json!({ "ok": 4, "refused": 0, "failed": 4 }));
+    // None that means something: nothing to do.
+    folder.write("none.csv", "name,plant\nb,1/(1+s\n");
+    assert!(folder.refused(&["batch", "--processes", "none.csv", "--out", "x.csv"]).contains("none.csv:2"));
+    assert!(!folder.names().contains(&"x.csv".to_owned()));
 }
 
 /// What is wrong with a list is told at once, with lines; nothing is written.
