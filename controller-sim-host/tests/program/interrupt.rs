@@ -107,3 +107,46 @@ fn a_hangup_that_is_ignored_stays_so() {
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
     assert_eq!(folder.names(), ["s.csv", "s.toml"]);
 }
+
+/// A study that is stopped, by a person or by a power failure, keeps its rows; `--resume` makes of them the file of a whole run.
+#[test]
+fn a_study_goes_on_where_it_was_stopped() {
+    let folder = Folder::new("interrupt-batch");
+    let study = [
+        "batch",
+        "--set",
+        "ah134",
+        "--methods",
+        "pi-ms,dob",
+        "--ms",
+        "1.2,1.6,2",
+        "--noise-ratio",
+        "2",
+        "--jobs",
+        "1",
+    ];
+    let run = |more: &[&str]| folder.done(&[&study[..], more].concat());
+    for kind in ["csv", "parquet"] {
+        let whole = format!("whole.{kind}");
+        run(&["--out", &whole]);
+        for (name, code, rows) in [("-INT", Some(130), 40), ("-KILL", None, 90)] {
+            let part = format!("part{name}.{kind}");
+            // Rows of a Parquet file stand in a table beside it until it is whole.
+            let journal = if kind == "csv" { part.clone() } else { format!("{part}.rows.csv") };
+            let lines = |journal: &str| {
+                fs::read_to_string(folder.0.join(journal)).map_or(0, |text| text.lines().count())
+            };
+            let child = start(&folder, &[&study[..], &["--out", &part]].concat());
+            wait_until("some rows", || lines(&journal) > rows);
+            signal(&child, name);
+            let output = end(child);
+            assert_eq!(output.status.code(), code, "{}", text(&output.stderr));
+            assert!(code.is_none() || text(&output.stderr).contains("`--resume` goes on"));
+            let kept = lines(&journal);
+            assert!(kept > rows && kept < 805, "{kept} lines: stopped too late to show anything");
+            run(&["--out", &part, "--resume"]);
+            assert!(folder.bytes(&whole) == folder.bytes(&part), "{part}");
+        }
+    }
+    assert!(!folder.names().iter().any(|name| name.ends_with(".rows.csv")));
+}
