@@ -17,6 +17,8 @@ mod loops;
 mod parsers;
 #[path = "export_st/print_c.rs"]
 mod print_c;
+#[path = "export_st/recorded.rs"]
+mod recorded;
 #[path = "export_st/text.rs"]
 mod text;
 #[path = "export_st/trace.rs"]

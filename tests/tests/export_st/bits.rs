@@ -4,6 +4,7 @@ use crate::compiled::{compile, compiler, not_run, run};
 use crate::drive::{Driven, outputs};
 use crate::loops::{all, random, scenario};
 use crate::print_c::{program, wide_program};
+use crate::recorded::Recorded;
 use controller_core::{Mode, Quality, Real, Status};
 use controller_sim_host::export::Export;
 use controller_sim_host::export::block::Role;
@@ -20,40 +21,20 @@ fn one<T: Real>(
     precision: Precision,
     tuning: bool,
 ) -> ([u32; 7], u32, [u32; 2]) {
-    let name = format!("{} {precision:?} {tuning}", spec.name);
-    let export = Export::new(scenario, spec, precision, None).unwrap_or_else(|why| panic!("{name}: {why:?}"));
-    let block = export.block("test").expect("a block");
-    assert_eq!(block.faults(), Vec::<String>::new(), "{name}");
-    let seed = 7 + u64::from(tuning);
-    let mut driven = Driven::<T>::new(scenario, spec, &block, export.capacity(), seed, tuning);
-    let (mut records, mut expected) = (Vec::new(), Vec::new());
-    for k in 0..SAMPLES {
-        let (sample, out, refused) = driven.sample(k);
-        records.extend(sample.record(&block));
-        expected.push((sample, outputs(&block, &out, refused)));
-    }
-    let source = program(&block, precision);
-    let file = name.replace(' ', "_");
+    let recorded = Recorded::<T>::new(scenario, spec, precision, tuning, SAMPLES);
+    let block = &recorded.block;
+    let source = program(block, precision);
+    let file = recorded.name.replace(' ', "_");
     let mut programs = vec![(&source, "-O0", file.clone()), (&source, "-O2", file.clone())];
-    let wide = wide_program(&block);
+    let wide = wide_program(block);
     if precision == Precision::F32 {
         // What the head of the text promises: REAL may be formed in LREAL.
         programs.push((&wide, "-O1", format!("{file}_wide")));
     }
     for (source, options, file) in programs {
-        let given = run(&compile(cc, &file, source, &[options]), &records);
-        let width = expected[0].1.len();
-        assert_eq!(given.len(), width * expected.len());
-        for (k, ((sample, expected), given)) in expected.iter().zip(given.chunks(width)).enumerate() {
-            let bits = |list: &[f64]| list.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            assert!(
-                bits(expected) == bits(given),
-                "{name} {options:?}, sample {k}\nexpected {expected:?}\ngiven    {given:?}\ninput {:?}",
-                sample.input
-            );
-        }
+        recorded.check(options, &run(&compile(cc, &file, source, &[options]), &recorded.records));
     }
-    (driven.modes, driven.status, driven.tuned)
+    (recorded.driven.modes, recorded.driven.status, recorded.driven.tuned)
 }
 
 #[test]
