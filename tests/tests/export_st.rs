@@ -21,5 +21,9 @@ mod print_c;
 mod recorded;
 #[path = "export_st/text.rs"]
 mod text;
+#[path = "export_st/text_bits.rs"]
+mod text_bits;
 #[path = "export_st/trace.rs"]
 mod trace;
+#[path = "export_st/translate/mod.rs"]
+mod translate;
