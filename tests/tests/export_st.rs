@@ -9,6 +9,8 @@ mod bits;
 mod compiled;
 #[path = "export_st/drive.rs"]
 mod drive;
+#[path = "export_st/fixtures.rs"]
+mod fixtures;
 #[path = "export_st/header.rs"]
 mod header;
 #[path = "export_st/loops.rs"]
