@@ -15,6 +15,8 @@ mod fixtures;
 mod header;
 #[path = "export_st/loops.rs"]
 mod loops;
+#[path = "export_st/mutations.rs"]
+mod mutations;
 #[path = "export_st/parsers.rs"]
 mod parsers;
 #[path = "export_st/print_c.rs"]
