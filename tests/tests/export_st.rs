@@ -21,6 +21,8 @@ mod mutations;
 mod parsers;
 #[path = "export_st/print_c.rs"]
 mod print_c;
+#[path = "export_st/program_text.rs"]
+mod program_text;
 #[path = "export_st/recorded.rs"]
 mod recorded;
 #[path = "export_st/text.rs"]

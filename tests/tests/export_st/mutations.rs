@@ -20,7 +20,7 @@ fn last(text: &str, other: impl Fn(&str) -> Option<String>) -> String {
 }
 
 /// Another operator in the last assignment that has this one.
-fn swapped(text: &str, operator: &str, other: &str) -> String {
+pub(crate) fn swapped(text: &str, operator: &str, other: &str) -> String {
     last(text, |line| {
         (line.contains(" := ") && line.contains(operator)).then(|| line.replacen(operator, other, 1))
     })

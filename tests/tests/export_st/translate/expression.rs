@@ -142,7 +142,7 @@ impl Translator {
             Variable::Simple(name) => {
                 self.tokens.name(name)?;
                 match self.declared(name) {
-                    Some((kind, None)) => Ok((c_name(name), kind)),
+                    Some((kind, None)) => Ok((self.c_name(name), kind)),
                     _ => Err(self.tokens.fault(&format!("{name} is no variable"))),
                 }
             }
@@ -157,8 +157,9 @@ impl Translator {
                 self.tokens.take(&Token::LBracket)?;
                 let index = self.expression(index, Kind::Dint)?;
                 self.tokens.take(&Token::RBracket)?;
-                Ok((format!("{}[cell({index}, {first}, {last})]", c_name(name)), kind))
+                Ok((format!("{}[cell({index}, {first}, {last})]", self.c_name(name)), kind))
             }
+            Variable::MemberAccess { base, member } => self.member(base, member),
             other => Err(self.tokens.fault(&format!("the variable {other:?}"))),
         }
     }
@@ -173,6 +174,7 @@ impl Translator {
                 Variable::Simple(name) => self.declared(name).map(|(kind, _)| kind),
                 _ => None,
             },
+            Expression::Variable(Variable::MemberAccess { member, .. }) => self.member_kind(member),
             Expression::Variable(_) => None,
             Expression::Unary { operand, .. } => self.kind(operand),
             Expression::Parenthesized(inner) => self.kind(inner),
@@ -194,9 +196,4 @@ impl Translator {
 fn compares(op: BinaryOp) -> bool {
     use BinaryOp::{Eq, Ge, Gt, Le, Lt, Ne};
     matches!(op, Eq | Ne | Lt | Le | Gt | Ge)
-}
-
-/// The C name of a variable: the language does not tell capitals from small letters.
-pub(super) fn c_name(name: &str) -> String {
-    format!("v_{}", name.to_ascii_uppercase())
 }

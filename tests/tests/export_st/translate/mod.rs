@@ -4,13 +4,17 @@
 //! Nothing here knows how the text was made. What has no translation is a fault, never left out.
 
 mod expression;
+mod program;
 mod tokens;
 
-use expression::c_name;
-use iec61131::{Expression, Literal, Parser, PouDeclaration, Statement, Token, TypeSpec, VarDecl};
+use iec61131::{
+    Expression, FunctionBlockDecl, Literal, Parser, PouDeclaration, Statement, Token, TypeSpec, VarDecl,
+};
 use std::collections::HashMap;
 use std::fmt::Write;
 use tokens::Tokens;
+
+pub(crate) use program::translate_program;
 
 /// An elementary type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,7 +71,12 @@ struct Declared {
 
 struct Translator {
     tokens: Tokens,
+    /// By their names in C.
     names: HashMap<String, Declared>,
+    /// What they begin with there.
+    prefix: &'static str,
+    /// The block that a program calls.
+    instance: Option<program::Instance>,
     out: String,
 }
 
@@ -81,6 +90,14 @@ const HEAD: &str = "#include <float.h>\n#include <stdint.h>\n#include <stdio.h>\
 
 /// The one function block of `text`.
 pub(crate) fn translate(text: &str) -> Result<Translated, String> {
+    let (mut all, block) = function_block(text)?;
+    all.main(&block.inputs, &block.outputs)?;
+    let names = |list: &[VarDecl]| list.iter().map(|v| v.name.clone()).collect();
+    Ok(Translated { inputs: names(&block.inputs), outputs: names(&block.outputs), source: all.out })
+}
+
+/// The one function block of `text`: its variables and its statements as `step`, without what feeds it.
+fn function_block(text: &str) -> Result<(Translator, FunctionBlockDecl), String> {
     let unit = Parser::new(text).parse().map_err(|fault| fault.to_string())?;
     let [PouDeclaration::FunctionBlock(block)] = unit.declarations.as_slice() else {
         return Err("not one function block".to_owned());
@@ -94,7 +111,8 @@ pub(crate) fn translate(text: &str) -> Result<Translated, String> {
     let Some(body) = block.body.as_ref().filter(|_| plain) else {
         return Err("more than variables and statements, or less".to_owned());
     };
-    let mut all = Translator { tokens: Tokens::of(text)?, names: HashMap::new(), out: HEAD.to_owned() };
+    let mut all = Translator::new(text, "v_")?;
+    all.out += HEAD;
     all.tokens.take(&Token::FunctionBlock)?;
     all.tokens.name(&block.name)?;
     for (list, opening) in
@@ -107,19 +125,27 @@ pub(crate) fn translate(text: &str) -> Result<Translated, String> {
     all.out += "}\n";
     all.tokens.take(&Token::EndFunctionBlock)?;
     all.tokens.end()?;
-    all.main(&block.inputs, &block.outputs)?;
-    let names = |list: &[VarDecl]| list.iter().map(|v| v.name.clone()).collect();
-    Ok(Translated { inputs: names(&block.inputs), outputs: names(&block.outputs), source: all.out })
+    Ok((all, block.clone()))
 }
 
 impl Translator {
+    fn new(text: &str, prefix: &'static str) -> Result<Self, String> {
+        let (names, out) = (HashMap::new(), String::new());
+        Ok(Self { tokens: Tokens::of(text)?, names, prefix, instance: None, out })
+    }
+
+    /// The C name of a variable: the language does not tell capitals from small letters.
+    fn c_name(&self, name: &str) -> String {
+        format!("{}{}", self.prefix, name.to_ascii_uppercase())
+    }
+
     fn line(&mut self, words: &str) {
         self.out.push_str(words);
         self.out.push('\n');
     }
 
     fn declared(&self, name: &str) -> Option<(Kind, Option<(i32, i32)>)> {
-        self.names.get(&c_name(name)).map(|of| (of.kind, of.cells))
+        self.names.get(&self.c_name(name)).map(|of| (of.kind, of.cells))
     }
 
     /// Declarations that the text opens with `opening`, in one section or more.
@@ -145,6 +171,9 @@ impl Translator {
         let VarDecl { name, var_type, init_value, is_constant, is_retain, location, .. } = variable;
         self.tokens.name(name)?;
         self.tokens.take(&Token::Colon)?;
+        if self.is_instance(variable)? {
+            return Ok(());
+        }
         let (kind, cells) = match var_type {
             TypeSpec::Elementary(of) => (self.elementary(of)?, None),
             TypeSpec::Array { dimensions, element_type } => {
@@ -184,9 +213,9 @@ impl Translator {
         }
         // A constant that is not static may stand unused.
         let scope = if *is_constant { "const" } else { "static" };
-        self.line(&format!("{scope} {} {}{size} = {initial};", kind.name(), c_name(name)));
+        self.line(&format!("{scope} {} {}{size} = {initial};", kind.name(), self.c_name(name)));
         let declared = Declared { kind, cells, own: !(*is_constant || input) };
-        match self.names.insert(c_name(name), declared) {
+        match self.names.insert(self.c_name(name), declared) {
             None => Ok(()),
             Some(_) => Err(self.tokens.fault(&format!("{name} is declared twice"))),
         }
@@ -251,7 +280,7 @@ impl Translator {
             Statement::For { control_var, start, end, step: None, body, .. } => {
                 self.tokens.take(&Token::For)?;
                 self.tokens.name(control_var)?;
-                let own = self.names.get(&c_name(control_var)).is_some_and(|of| of.own);
+                let own = self.names.get(&self.c_name(control_var)).is_some_and(|of| of.own);
                 if !own || self.declared(control_var) != Some((Kind::Dint, None)) {
                     return Err(self.tokens.fault(&format!("{control_var} counts")));
                 }
@@ -260,7 +289,7 @@ impl Translator {
                 self.tokens.take(&Token::To)?;
                 let end = self.expression(end, Kind::Dint)?;
                 self.tokens.take(&Token::Do)?;
-                let counter = c_name(control_var);
+                let counter = self.c_name(control_var);
                 self.line(&format!("{{\nconst int32_t end = {end};"));
                 self.line(&format!("for ({counter} = {start}; {counter} <= end; {counter}++) {{"));
                 self.statements(body)?;
@@ -268,6 +297,7 @@ impl Translator {
                 self.line(&format!("}}\n{counter} = INT32_MIN;\n}}"));
                 self.tokens.take(&Token::EndFor)?;
             }
+            Statement::FunctionCall { name, arguments, .. } => self.call(name, arguments)?,
             other => return Err(self.tokens.fault(&format!("the statement {other:?}"))),
         }
         Ok(())
@@ -297,7 +327,7 @@ impl Translator {
                 let Some((kind, None)) = self.declared(&v.name) else {
                     return Err(format!("{} is an array", v.name));
                 };
-                let name = c_name(&v.name);
+                let name = self.c_name(&v.name);
                 let _ = match given {
                     true => writeln!(out, "{name} = ({})in[{n}];", kind.name()),
                     false => writeln!(out, "out[{n}] = (double){name};"),
