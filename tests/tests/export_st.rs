@@ -1,5 +1,6 @@
 //! Exported function blocks: their statements, printed as C by a generator of these tests, step with the bits of the core;
-//! the text is what independent front ends of Structured Text accept; what it prints is what is meant.
+//! so does their text, printed as C from the tree of a foreign parser; independent front ends of Structured Text accept it;
+//! what it prints is what is meant.
 //!
 //! To renew the committed block: `RENEW_EXPORTS=1 cargo test -p controller-tests --test export_st`.
 

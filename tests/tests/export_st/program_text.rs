@@ -35,8 +35,10 @@ fn the_test_program_passes_from_its_text() {
         // The last sample is yet to come.
         assert_eq!(verdict(cc, &name, &program, &block, 119), [0.0, 0.0, 0.0, -1.0], "{name}");
         // Another number in one sample of the outputs that are compared.
-        let line = program.lines().find(|line| line.contains("OUT_OP[77] := ")).expect("a sample");
-        let other = program.replacen(line, "OUT_OP[77] := 1.0E10;", 1);
+        let number = |line: &&str| line.contains("[77] := ") && line.contains('.') && line.contains("OUT_");
+        let line = program.lines().find(number).expect("a sample");
+        let (place, _) = line.split_once(" := ").expect("a value");
+        let other = program.replacen(line, &format!("{place} := 1.0E10;"), 1);
         assert_eq!(verdict(cc, &name, &other, &block, 121), [1.0, 0.0, 1.0, 77.0], "{name}");
         // A block that adds where it should subtract.
         let found = verdict(cc, &name, &program, &swapped(&block, " - ", " + "), 121);
