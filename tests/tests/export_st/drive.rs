@@ -138,6 +138,14 @@ impl<T: Real> Driven<T> {
         }
     }
 
+    /// Before the first sample: a plant that is somewhere, inputs that are something. What settles itself has to do it there.
+    pub(crate) fn scatter(&mut self) {
+        self.plant = 1.5 * self.chance.noise();
+        for _ in 0..100 {
+            self.before = self.next(1000);
+        }
+    }
+
     /// The next sample: what the block is given, what it must give, whether it refuses parameters.
     pub(crate) fn sample(&mut self, k: u32) -> (Sample<T>, ControllerOutput<T>, bool) {
         let mut next = self.next(k);

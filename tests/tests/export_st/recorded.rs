@@ -6,6 +6,7 @@ use controller_sim_host::export::Export;
 use controller_sim_host::export::block::Block;
 use controller_sim_host::scenario::{ControllerSpec, Scenario};
 use controller_sim_host::simulate::Precision;
+use std::ops::Range;
 
 /// Samples of one loop, with the outputs of the core's step.
 pub(crate) struct Recorded<T: Real> {
@@ -26,15 +27,40 @@ impl<T: Real> Recorded<T> {
         tuning: bool,
         samples: u32,
     ) -> Self {
+        Self::with(scenario, spec, precision, tuning, 7 + u64::from(tuning), 0..samples, |_| {})
+    }
+
+    /// From power-up on, in the middle of something that `seed` draws; with an odd one from a good sample on.
+    pub(crate) fn scattered(
+        scenario: &Scenario,
+        spec: &ControllerSpec,
+        precision: Precision,
+        seed: u64,
+        samples: u32,
+    ) -> Self {
+        // The driver's first samples are bad, those from here on are not.
+        let first = if seed.is_multiple_of(2) { 0 } else { 1000 };
+        Self::with(scenario, spec, precision, false, seed, first..first + samples, Driven::scatter)
+    }
+
+    fn with(
+        scenario: &Scenario,
+        spec: &ControllerSpec,
+        precision: Precision,
+        tuning: bool,
+        seed: u64,
+        samples: Range<u32>,
+        begin: impl Fn(&mut Driven<T>),
+    ) -> Self {
         let name = format!("{} {precision:?} {tuning}", spec.name);
         let export =
             Export::new(scenario, spec, precision, None).unwrap_or_else(|why| panic!("{name}: {why:?}"));
         let block = export.block("test").expect("a block");
         assert_eq!(block.faults(), Vec::<String>::new(), "{name}");
-        let seed = 7 + u64::from(tuning);
         let mut driven = Driven::<T>::new(scenario, spec, &block, export.capacity(), seed, tuning);
+        begin(&mut driven);
         let (mut records, mut expected) = (Vec::new(), Vec::new());
-        for k in 0..samples {
+        for k in samples {
             let (sample, out, refused) = driven.sample(k);
             records.extend(sample.record(&block));
             expected.push((sample, outputs(&block, &out, refused)));

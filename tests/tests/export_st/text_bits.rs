@@ -16,6 +16,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 const SAMPLES: u32 = 10_000;
 
+/// Power-ups of a loop, beside its long run.
+const STARTS: u64 = 12;
+
 /// How programs are compiled: each reads a REAL's decimals in its own way.
 const BUILDS: [&[&str]; 2] = [&["-O0"], &["-O2", "-DBY_DOUBLE"]];
 
@@ -47,11 +50,16 @@ fn one<T: Real>(cc: &str, scenario: &Scenario, spec: &ControllerSpec, precision:
     let recorded = [false, true].map(|tuning| Recorded::<T>::new(scenario, spec, precision, tuning, SAMPLES));
     let name = format!("{} {precision:?} text", spec.name);
     let source = translated(&name, &text(scenario, spec, precision), &recorded[0].block).source;
-    for options in BUILDS {
-        let program = compile(cc, &name.replace([' ', ','], "_"), &source, options);
+    let programs = BUILDS.map(|options| compile(cc, &name.replace([' ', ','], "_"), &source, options));
+    for (program, options) in programs.iter().zip(BUILDS) {
         for recorded in &recorded {
-            recorded.check(&format!("text {options:?}"), &run(&program, &recorded.records));
+            recorded.check(&format!("text {options:?}"), &run(program, &recorded.records));
         }
+    }
+    // Settling happens once in a life: many lives, each from another beginning.
+    for seed in 0..STARTS {
+        let recorded = Recorded::<T>::scattered(scenario, spec, precision, 100 + seed, 60);
+        recorded.check(&format!("text, start {seed}"), &run(&programs[1], &recorded.records));
     }
     for Recorded { driven, .. } in &recorded {
         met.modes.iter_mut().zip(driven.modes).for_each(|(all, more)| *all += more);
