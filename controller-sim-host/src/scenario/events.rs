@@ -153,7 +153,9 @@ fn read_parameters(
         let Some(draft) = drafts.get_mut(index) else { continue };
         let before = table.log.count();
         draft.change(table);
+        table.log.turn_to(Some(index));
         trial::check(draft, context, table.log, before);
+        table.log.turn_to(None);
         list.push((index, draft.spec()));
     }
     Some((first, Change::Parameters(list)))

@@ -68,6 +68,8 @@ pub struct Fault {
     pub related: Option<Related>,
     /// The text that `span` and `related` are places of, when it is not the scenario itself but a file it includes.
     pub source: Option<Arc<SourceText>>,
+    /// The only controller that a warning is about: its index in the scenario.
+    pub controller: Option<usize>,
 }
 
 /// A text with its name, for messages.
@@ -92,7 +94,15 @@ impl Fault {
     /// A fault without help.
     #[must_use]
     pub fn new(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { code, span, message: message.into(), help: None, related: None, source: None }
+        Self {
+            code,
+            span,
+            message: message.into(),
+            help: None,
+            related: None,
+            source: None,
+            controller: None,
+        }
     }
 
     /// The same fault with help.

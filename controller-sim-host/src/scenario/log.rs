@@ -1,7 +1,7 @@
 //! Where faults and warnings are collected while a text is read.
 
 use super::fault::Fault;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 /// More faults than anyone reads; a text of a million wrong keys must not take for ever.
@@ -16,13 +16,21 @@ pub(super) struct Log<'a> {
     pub(super) text: &'a str,
     faults: RefCell<Vec<Fault>>,
     warnings: RefCell<Vec<Fault>>,
+    /// The controller that is being read or looked at.
+    about: Cell<Option<usize>>,
     /// Keys of the run, such as `ts`, that the text has nowhere above its first table.
     absent: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Log<'a> {
     pub(super) fn new(text: &'a str) -> Self {
-        Self { text, faults: RefCell::default(), warnings: RefCell::default(), absent: RefCell::default() }
+        Self {
+            text,
+            faults: RefCell::default(),
+            warnings: RefCell::default(),
+            about: Cell::default(),
+            absent: RefCell::default(),
+        }
     }
 
     /// Adds a fault; a second equal one is dropped.
@@ -30,9 +38,14 @@ impl<'a> Log<'a> {
         push(&self.faults, fault);
     }
 
-    /// Adds a warning; a second equal one is dropped.
+    /// Adds a warning; a second equal one is dropped, and the first is about more than one controller if they differ in it.
     pub(super) fn warn(&self, warning: Fault) {
-        push(&self.warnings, warning);
+        push(&self.warnings, Fault { controller: warning.controller.or(self.about.get()), ..warning });
+    }
+
+    /// What follows is about the controller with this index alone, or about any of them.
+    pub(super) fn turn_to(&self, controller: Option<usize>) {
+        self.about.set(controller);
     }
 
     /// `key` belongs above the first table and is not there.
@@ -92,8 +105,10 @@ impl<'a> Log<'a> {
 
 fn push(list: &RefCell<Vec<Fault>>, fault: Fault) {
     let mut list = list.borrow_mut();
-    let known = list.iter().any(|f| f.span == fault.span && f.message == fault.message);
-    if !known && list.len() < MOST {
+    let known = list.iter_mut().find(|f| f.span == fault.span && f.message == fault.message);
+    if let Some(known) = known {
+        known.controller = known.controller.filter(|_| known.controller == fault.controller);
+    } else if list.len() < MOST {
         list.push(fault);
     }
 }

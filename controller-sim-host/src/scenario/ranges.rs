@@ -130,7 +130,8 @@ pub(super) fn warn_of_compensators(scenario: &Scenario, events: &[Placed], log: 
         for (_, span) in event.changes.iter().zip(spans).filter(|(c, _)| matches!(c, Change::Compensator(_)))
         {
             let help = "an `estimator` or an `observer` of the controller is its compensator";
-            log.warn(Fault::new(code::NO_EFFECT, span.clone(), message.clone()).help(help));
+            let warning = Fault::new(code::NO_EFFECT, span.clone(), message.clone()).help(help);
+            log.warn(Fault { controller: event.controller, ..warning });
         }
     }
 }

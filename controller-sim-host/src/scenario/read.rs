@@ -202,8 +202,10 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
         actuator,
     };
     for (index, places) in places.iter().enumerate() {
+        log.turn_to(Some(index));
         ranges::warn(&scenario, index, &events, places, log);
     }
+    log.turn_to(None);
     ranges::warn_of_compensators(&scenario, &events, log);
     oddities::warn(&scenario, &events, &tables, log);
     Some(scenario)
@@ -227,6 +229,7 @@ fn read_controllers(roots: &Roots<'_>, context: &Context<'_>, plant: Option<&Pla
     let mut drafts: Vec<Draft> = Vec::new();
     for table in roots.all().flat_map(|table| table.tables("controller")) {
         let before = log.count();
+        log.turn_to(Some(drafts.len()));
         let mut draft = Draft::read(table);
         if let (Some(plant), Some(ts), true) = (plant, context.ts, log.count() == before) {
             draft.design(plant, ts, context.latency, log);
@@ -243,6 +246,7 @@ fn read_controllers(roots: &Roots<'_>, context: &Context<'_>, plant: Option<&Pla
         }
         drafts.push(draft);
     }
+    log.turn_to(None);
     drafts
 }
 
