@@ -71,6 +71,7 @@ extern "C" {
 
 /* ---- Quality of a measurement ---------------------------------------------------------------------------------- */
 
+/* PV_QUALITY of the function blocks (ctl_fb.h) counts the other way: 2 is good there. */
 #define CTL_QUALITY_GOOD 0
 #define CTL_QUALITY_UNCERTAIN 1 /* used, with CTL_STATUS_UNCERTAIN */
 #define CTL_QUALITY_BAD 2       /* not used; any other number counts as bad */

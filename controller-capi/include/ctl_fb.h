@@ -36,6 +36,8 @@ extern "C" {
 
 /* ---- Variables ------------------------------------------------------------------------------------------------- */
 
+/* pv_quality counts as CTL_QUALITY_... of ctl.h does not: here 2 is good and 0 is bad, there 0 is good and 2 is bad. */
+
 /* Where a measurement is. */
 #define CTL_FB_PV_ENGINEERING 0
 #define CTL_FB_PV_COUNTS 1
