@@ -10,6 +10,8 @@
  *     ctl_f32_init(block, sizeof block, &config, NULL);
  *     every LOOP_DOB_FIRST_ORDER_TS seconds: ctl_f32_step(block, sizeof block, &in, &out);
  */
+/* WARNING: a PV from -1000000.0 to 1000000.0 counts as good, also that of a broken sensor.
+ * Write the range of the transmitter in the design file, key measurement with lo and hi; export again. */
 #ifndef LOOP_DOB_FIRST_ORDER_H
 #define LOOP_DOB_FIRST_ORDER_H
 

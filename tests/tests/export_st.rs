@@ -4,6 +4,8 @@
 //!
 //! To renew the committed block: `RENEW_EXPORTS=1 cargo test -p controller-tests --test export_st`.
 
+#[path = "export_st/anew.rs"]
+mod anew;
 #[path = "export_st/bits.rs"]
 mod bits;
 #[path = "export_st/compiled.rs"]
@@ -34,3 +36,5 @@ mod text_bits;
 mod trace;
 #[path = "export_st/translate/mod.rs"]
 mod translate;
+#[path = "export_st/vocabulary.rs"]
+mod vocabulary;

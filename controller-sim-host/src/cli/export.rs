@@ -4,9 +4,9 @@ use super::arguments::{Number, Options, key_and_value};
 use super::execute::Job;
 use super::scenarios::read_files;
 use super::{Failure, colours, examples, print};
-use crate::export::{Export, Format, Refused};
-use crate::output::{FileTarget, Problem, Severity, exported_json, render};
-use crate::scenario::{ControllerSpec, closest};
+use crate::export::{Export, Format, OpenRange, Refused};
+use crate::output::{ExportWarnings, FileTarget, Problem, Severity, exported_json, render};
+use crate::scenario::{ControllerSpec, Fault, closest};
 use clap::{Args, ValueEnum, ValueHint};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -95,12 +95,33 @@ pub(super) fn run(arguments: &ExportArguments, json: bool) -> Result<(), Failure
         target.write(|file| file.write_all(text.as_bytes())).map_err(Failure::internal)?;
     }
     let saved = target.map(|target| target.path().display().to_string());
+    let own = job.scenario().controllers.iter().position(|other| std::ptr::eq(other, spec));
+    let concerns = |warning: &&Fault| warning.controller.is_none() || warning.controller == own;
+    let remarks: Vec<Fault> = job.input.warnings.iter().filter(concerns).cloned().collect();
+    let open = open_ranges(&export, arguments.format);
     if json {
-        return Ok(print(&exported_json(&export, arguments.format.into(), &text, saved.as_deref()))?);
+        let warnings = ExportWarnings { source: job.input.source(), remarks: &remarks, own: &open };
+        let format = arguments.format.into();
+        return Ok(print(&exported_json(&export, format, &text, saved.as_deref(), &warnings))?);
     }
-    let warnings = render(job.input.source(), &job.input.warnings, Severity::Warning, colours());
+    let mut warnings = render(job.input.source(), &remarks, Severity::Warning, colours());
+    for problem in &open {
+        warnings.push_str(&format!("{}\n\n", problem.as_warning()));
+    }
     io::stderr().write_all(warnings.as_bytes())?;
     Ok(print(&saved.map_or(text, |path| format!("wrote {path}\n")))?)
+}
+
+/// A warning for each range that a PLC or a C program would take from nowhere.
+fn open_ranges(export: &Export<'_>, language: Language) -> Vec<Problem> {
+    if matches!(language, Language::Rust) {
+        return Vec::new();
+    }
+    let warning = |range: &OpenRange| {
+        let message = format!("`{}` has no `{}`: {}", export.name(), range.key(), range.meaning());
+        Problem::new("open-range", message).help(range.help())
+    };
+    export.open_ranges().iter().map(warning).collect()
 }
 
 /// The only controller, or the one with this name.

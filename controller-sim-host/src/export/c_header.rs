@@ -25,6 +25,10 @@ pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
         comment(export.name()),
         comment(origin)
     );
+    for range in export.open_ranges() {
+        let [what, cure] = range.warning();
+        let _ = writeln!(out, "/* {what}\n * {} */", cure.trim_start());
+    }
     let _ = write!(out, "#ifndef {upper}_H\n#define {upper}_H\n\n#include \"ctl.h\"\n\n");
     let _ = writeln!(out, "/* Sampling period [s]. */\n#define {upper}_TS {:?}\n", export.ts());
     if compensated {

@@ -1,6 +1,6 @@
 //! Name and head of an exported function block.
 
-use super::Export;
+use super::{Export, OpenRange};
 use crate::simulate::Precision;
 
 /// Longest name of a block: what the oldest programming systems take.
@@ -39,7 +39,7 @@ fn digits(text: &str) -> String {
 }
 
 /// What the file says of itself.
-pub(super) fn lines(export: &Export<'_>, origin: &str, tunable: bool) -> Vec<String> {
+pub(super) fn lines(export: &Export<'_>, origin: &str, tunable: bool, design: i32) -> Vec<String> {
     let real = match export.precision {
         Precision::F32 => "REAL",
         Precision::F64 => "LREAL",
@@ -53,6 +53,10 @@ pub(super) fn lines(export: &Export<'_>, origin: &str, tunable: bool) -> Vec<Str
         "Call it once every {:?} s, in a task of this period. Numbers are {real}.",
         export.ts()
     ));
+    lines.push(format!(
+        "Design number {design}. What the variables mean, import, restart, online change: EXPORTED.md."
+    ));
+    lines.extend(export.open_ranges().iter().flat_map(OpenRange::warning));
     let mut more = |words: &str| lines.push(words.to_owned());
     more("Do not change numbers here: they have passed checks that this file cannot repeat.");
     more("Bits: every output is that of the reference step, bit for bit, where");
@@ -76,17 +80,28 @@ pub(super) fn lines(export: &Export<'_>, origin: &str, tunable: bool) -> Vec<Str
     more("  compiles by way of C with gcc, -ffp-contract=off;");
     more("- numbers below the normal range are kept, and comparisons with NaN are false.");
     more("Elsewhere the block does the same to rounding; a NaN or infinite input may then not be found.");
-    more("Start: an instance settles itself at its first good PV, at the output BKCAL_IN or OP_INITIAL.");
     more(
-        "Bad PV (not finite, out of range, PV_QUALITY not 0 or 1): output and terms are held for HOLD_SAMPLES calls,",
+        "Start: an instance, all zero or not, settles itself at its first good PV, at OP_READBACK with RB_USE, else at OP_INIT.",
+    );
+    more(
+        "Memory of another design: all values are new and the loop begins anew, at the OP that is still there; bit 27 until ACK.",
+    );
+    more(
+        "Bad PV (not finite, outside PV_MIN to PV_MAX, PV_QUALITY not 2 or 1): output and terms are held for FAIL_HOLD calls,",
     );
     more("  then the fallback; the next good PV settles the block where it is. STATUS tells.");
-    more(match tunable {
-        true => {
-            "KP, TN, TV, TF may change at any time: taken at the next call without a bump, or refused (ST_PAR_REFUSED)."
-        }
-        false => "This loop has no KP, TN, TV to tune: export it again to change its parameters.",
-    });
+    if tunable {
+        more(
+            "KP, TN, TV, TF may change at any time: taken at the next call without a bump, or refused (bit 26).",
+        );
+        let direct = export.spec.config.pid.signed_gains()[0] < 0.0;
+        more(&format!(
+            "Only the size of KP counts. The direction is that of the design: PV rises, OP {}.",
+            if direct { "rises (direct)" } else { "falls (reverse)" }
+        ));
+    } else {
+        more("This loop has no KP, TN, TV to tune: export it again to change its parameters.");
+    }
     lines
 }
 

@@ -7,6 +7,7 @@ pub mod block;
 mod c_header;
 mod function_block;
 mod head;
+mod open_range;
 mod rust;
 pub mod st;
 mod st_test;
@@ -15,6 +16,7 @@ use crate::scenario::{ControllerSpec, Scenario};
 use crate::simulate::{AnyLaw, Precision};
 use block::Block;
 use controller_core::{AnyCompensator, CompensatorConfig, ConfigErrors};
+pub use open_range::OpenRange;
 
 /// In what the loop is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,7 +115,7 @@ impl<'a> Export<'a> {
     /// # Errors
     /// A loop with an ADRC.
     pub fn block(&self, origin: &str) -> Result<Block, Refused> {
-        let head = |tunable| head::lines(self, origin, tunable);
+        let head = |tunable, design| head::lines(self, origin, tunable, design);
         function_block::block(self, &head::name(self.name()), head).ok_or(Refused::Adrc)
     }
 
@@ -139,6 +141,12 @@ impl<'a> Export<'a> {
     #[must_use]
     pub fn capacity(&self) -> usize {
         self.capacity
+    }
+
+    /// The ranges that nobody has given.
+    #[must_use]
+    pub fn open_ranges(&self) -> Vec<OpenRange> {
+        OpenRange::of(&self.spec.config)
     }
 
     fn compensator(&self) -> Option<CompensatorConfig> {

@@ -14,8 +14,8 @@ pub fn function_block(block: &Block, precision: Precision) -> String {
     }
     text.section(block, "VAR_INPUT", &[Role::Input]);
     text.section(block, "VAR_OUTPUT", &[Role::Output]);
-    text.section(block, "VAR CONSTANT", &[Role::Named]);
-    text.section(block, "VAR", &[Role::Constant, Role::Coefficient, Role::State, Role::Scratch]);
+    let own = [Role::Named, Role::Constant, Role::Coefficient, Role::State, Role::Scratch];
+    text.section(block, "VAR", &own);
     text.line(0, "");
     text.all(&block.body, 0);
     text.line(0, "END_FUNCTION_BLOCK");
@@ -70,13 +70,16 @@ impl Text {
         let mut last = None;
         for variable in list {
             let about = match variable.role {
+                Role::Named => {
+                    "codes and counts; all that follows takes its values by statements, at the beginning of the body"
+                }
                 Role::Constant => {
-                    "numbers that never change: variables, so that no translator makes literals of them"
+                    "numbers of the design: variables, so that no translator makes literals of them"
                 }
                 Role::Coefficient => "coefficients of the PID",
                 Role::State => "state",
                 Role::Scratch => "scratch of one sample",
-                Role::Input | Role::Output | Role::Named => "",
+                Role::Input | Role::Output => "",
             };
             if last != Some(variable.role) && !about.is_empty() {
                 self.line(1, &format!("(* {about} *)"));
@@ -95,6 +98,7 @@ impl Text {
         };
         let initial = match &variable.initial {
             Initial::Zero => String::new(),
+            _ if variable.role != Role::Input => String::new(),
             Initial::Number(value) => format!(" := {}", decimal(*value)),
             Initial::Count(n) => format!(" := {n}"),
             // Not all front ends know numbers with a base.
@@ -158,6 +162,8 @@ impl Text {
             Expression::Variable(name) => name.clone(),
             Expression::Cell(array, index) => format!("{array}[{index}]"),
             Expression::Count(n) => n.to_string(),
+            Expression::Number(value) => decimal(*value),
+            Expression::Word(bits) => bits.to_string(),
             Expression::Flag(is) => truth(*is).to_owned(),
             Expression::Operation(operator, a, b) => {
                 let sign = match operator {

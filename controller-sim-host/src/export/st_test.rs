@@ -1,13 +1,17 @@
 //! A program in Structured Text that replays a recorded trace through the exported block.
 
-use super::block::Type;
-use super::{Export, head, st};
+use super::block::{Initial, Type};
+use super::{Export, OpenRange, head, st};
+use crate::scenario::ControllerSpec;
 use crate::simulate::{AnyLaw, Precision};
-use controller_core::{ControllerInput, ControllerOutput, Mode, Quality, Real};
+use controller_core::{ControllerInput, ControllerOutput, Mode, PidConfig, Quality, Real};
 use std::fmt::Write;
 
 /// Samples of the trace.
-const SAMPLES: u32 = 120;
+const SAMPLES: u32 = 220;
+
+/// Inputs of the block that tune it.
+const TUNING: [&str; 4] = ["KP", "TN", "TV", "TF"];
 
 /// The program.
 pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
@@ -19,12 +23,14 @@ pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
     let name = format!("TEST_{}", block.trim_start_matches("FB_"));
     let mut out = format!("PROGRAM {name}\n");
     let last = SAMPLES - 1;
-    for line in [
+    let mut head = vec![
         format!("Replays {SAMPLES} samples through {block}, which is exported by controller-sim export --format st"),
         format!("from the same loop of {}, and compares output and status with those of the reference step.", head::plain(origin)),
         "One sample in each call; the task's period does not matter.".to_owned(),
         "DONE and PASSED: every value is the same. FAULTS counts samples that differ, FIRST_FAULT is the first.".to_owned(),
-    ] {
+    ];
+    head.extend(export.open_ranges().iter().flat_map(OpenRange::warning));
+    for line in head {
         let _ = writeln!(out, "(* {line} *)");
     }
     let _ = write!(
@@ -45,12 +51,14 @@ pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
         }
     }
     out += "END_IF;\nIF SAMPLE <= LAST_SAMPLE THEN\n    LAW(\n";
-    let inputs = ["SP", "SP_CAS", "PV", "PV_QUALITY", "MODE", "MAN", "FF", "INHIBIT_UP", "ACK"];
-    let calls: Vec<String> =
-        inputs.iter().map(|name| format!("        {name} := IN_{name}[SAMPLE]")).collect();
+    let calls: Vec<String> = columns
+        .iter()
+        .filter_map(|column| column.name.strip_prefix("IN_"))
+        .map(|input| format!("        {input} := IN_{input}[SAMPLE]"))
+        .collect();
     out += &calls.join(",\n");
     out += "\n    );\n    SAME := TRUE;\n";
-    for name in ["OP", "OP_UNLIM", "SP_WORK", "STATUS"] {
+    for name in columns.iter().filter_map(|column| column.name.strip_prefix("OUT_")) {
         let _ = writeln!(
             out,
             "    IF NOT (LAW.{name} = OUT_{name}[SAMPLE]) THEN\n        SAME := FALSE;\n    END_IF;"
@@ -63,11 +71,17 @@ pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
 }
 
 /// What a loop was given and gave.
-type Sample<T> = (ControllerInput<T>, ControllerOutput<T>);
+struct Sample<T> {
+    input: ControllerInput<T>,
+    /// `KP, TN, TV, TF`.
+    tuning: [f64; 4],
+    output: ControllerOutput<T>,
+    status: u32,
+}
 
 /// A signal of the trace: a word of the language for every sample.
 struct Column {
-    name: &'static str,
+    name: String,
     kind: Type,
     cells: Vec<String>,
 }
@@ -83,13 +97,63 @@ impl Column {
     }
 }
 
-/// Inputs and outputs of a loop around a made-up plant: start without a measurement, set-points, bad samples, modes,
-/// saturation if the range is near.
+/// The law of the trace with what it was tuned to.
+struct Tuned<T: Real> {
+    law: AnyLaw<T>,
+    spec: ControllerSpec,
+    taken: [f64; 4],
+}
+
+impl<T: Real> Tuned<T> {
+    /// Puts other values in force as the block does; whether it refuses them.
+    fn take(&mut self, tuning: [f64; 4]) -> bool {
+        let [kp, tn, tv, tf] = tuning;
+        if tuning.iter().any(|x| *x < 0.0) {
+            return true;
+        }
+        if tuning == self.taken {
+            return false;
+        }
+        let old = self.spec.config.pid;
+        let direction = if old.kp < 0.0 { -1.0 } else { 1.0 };
+        let new = PidConfig::from_standard(direction * kp, if tn > 0.0 { tn } else { f64::INFINITY }, tv, tf);
+        let mut spec = self.spec.clone();
+        spec.config.pid = PidConfig { kp: new.kp, ki: new.ki, kd: new.kd, tf: new.tf, ..old };
+        let refused = self.law.adopt(&spec).is_err();
+        if !refused {
+            self.taken = tuning;
+        }
+        refused
+    }
+}
+
+/// The values of `KP, TN, TV, TF` in a sample of the trace, `start` being those of the design.
+fn tuning<T: Real>(k: u32, start: [f64; 4], ts: f64) -> [f64; 4] {
+    let round = |x: f64| T::from_f64(x).to_f64();
+    let [kp, tn, tv, tf] = start;
+    match k {
+        170..=179 => [round(1.2 * kp), tn, tv, tf],
+        180..=187 => [round(1.2 * kp), round(if tn == 0.0 { 40.0 * ts } else { 1.5 * tn }), tv, tf],
+        188..=195 => [kp, 0.0, tv, tf],
+        196..=199 => [kp, tn, -1.0, tf],
+        _ => start,
+    }
+}
+
+/// Inputs and outputs of a loop around a made-up plant: start without a measurement, set-points, bad samples, all modes,
+/// read-back, inhibition, the compensator out and in, other parameters, saturation if the range is near.
 fn record<T: Real>(export: &Export<'_>) -> Vec<Column> {
     let (scenario, spec) = (export.scenario, export.spec);
     // It was built when the export was checked.
     let law = AnyLaw::<T>::new(spec, scenario.ts, scenario.latency, export.capacity);
-    let Ok(mut law) = law else { return Vec::new() };
+    let (Ok(law), Ok(block)) = (law, export.block("")) else { return Vec::new() };
+    let begins = |name: &str| match block.variable(name).map(|v| &v.initial) {
+        Some(Initial::Number(value)) => *value,
+        _ => 0.0,
+    };
+    let start = TUNING.map(begins);
+    let tunable = block.variable("KP").is_some();
+    let mut tuned = Tuned { law, spec: spec.clone(), taken: start };
     let config = spec.config.rounded::<T>();
     let size = |x: f64| if x == 0.0 { 1.0 } else { x };
     let [kp, ki, _] = config.pid.signed_gains();
@@ -105,8 +169,12 @@ fn record<T: Real>(export: &Export<'_>) -> Vec<Column> {
             0..=9 => base,
             10..=49 => base + reach,
             50..=79 => base - 0.37 * reach,
-            _ => hi + 1.0,
+            80..=119 => hi + 1.0,
+            _ if k / 8 % 2 == 0 => base + 0.4 * reach,
+            _ => base - 0.3 * reach,
         };
+        let between =
+            |x: f64| T::from_f64((1.0 - x) * config.limits.lo.max(-2.0) + x * config.limits.hi.min(2.0));
         let input = ControllerInput {
             r: T::from_f64(aim),
             r_remote: T::from_f64(base + 0.21 * reach),
@@ -124,50 +192,97 @@ fn record<T: Real>(export: &Export<'_>) -> Vec<Column> {
                 70..=79 => Mode::Manual,
                 90..=99 => Mode::Cascade,
                 105..=109 => Mode::Hold,
+                120..=127 => Mode::Track,
+                132..=135 => Mode::Off,
                 _ => Mode::Auto,
             },
-            manual: Some(T::from_f64(0.3 * config.limits.lo.max(-2.0) + 0.7 * config.limits.hi.min(2.0))),
+            manual: Some(between(0.7)),
+            track: between(0.6),
             offset: T::from_f64(if k > 30 { 0.01 } else { 0.0 }),
+            u_applied: (138..=145).contains(&k).then(|| between(0.55)),
+            compensate: !(148..=155).contains(&k),
             inhibit_up: (100..103).contains(&k),
+            inhibit_down: (158..=169).contains(&k),
             acknowledge: k % 8 == 7,
-            ..ControllerInput::default()
         };
-        let out = law.step(&input);
-        let u = out.u.to_f64();
+        let tuning = if tunable { tuning::<T>(k, start, export.ts()) } else { start };
+        let refused = tunable && tuned.take(tuning);
+        let output = tuned.law.step(&input);
+        let u = output.u.to_f64();
         let u_0 = *rest.get_or_insert(u);
         y += 0.2 * (gain * (u - u_0) - (y - base));
         y = y.clamp(config.measurement_lo, config.measurement_hi);
-        samples.push((input, out));
+        let status = output.status.bits() | u32::from(refused) << 26;
+        samples.push(Sample { input, tuning, output, status });
     }
-    let numbers = |name, of: &dyn Fn(&Sample<T>) -> T| Column {
-        name,
-        kind: Type::Real,
-        cells: samples.iter().map(|sample| st::decimal(of(sample).to_f64())).collect(),
+    columns(&samples, tunable)
+}
+
+/// The number of a mode at the output `MODE`.
+fn mode_code(mode: Mode) -> u8 {
+    match mode {
+        Mode::Off => 1,
+        Mode::Manual => 2,
+        Mode::Auto => 3,
+        Mode::Cascade => 4,
+        Mode::Track => 5,
+        Mode::Hold => 6,
+        Mode::Fallback => 7,
+    }
+}
+
+fn columns<T: Real>(samples: &[Sample<T>], tunable: bool) -> Vec<Column> {
+    let column = |name: &str, kind: Type, of: &dyn Fn(&Sample<T>) -> String| Column {
+        name: name.to_owned(),
+        kind,
+        cells: samples.iter().map(of).collect(),
     };
-    let counts = |name, of: &dyn Fn(&ControllerInput<T>) -> u8| Column {
-        name,
-        kind: Type::Count,
-        cells: samples.iter().map(|(i, _)| of(i).to_string()).collect(),
+    let number = |name: &str, of: &dyn Fn(&Sample<T>) -> T| {
+        column(name, Type::Real, &|sample| st::decimal(of(sample).to_f64()))
     };
-    let flags = |name, of: &dyn Fn(&ControllerInput<T>) -> bool| Column {
-        name,
-        kind: Type::Flag,
-        cells: samples.iter().map(|(i, _)| st::truth(of(i)).to_owned()).collect(),
+    let flag = |name: &str, of: &dyn Fn(&ControllerInput<T>) -> bool| {
+        column(name, Type::Flag, &|sample| st::truth(of(&sample.input)).to_owned())
     };
-    let status = samples.iter().map(|(_, o)| o.status.bits().to_string()).collect();
-    vec![
-        numbers("IN_SP", &|(i, _)| i.r),
-        numbers("IN_SP_CAS", &|(i, _)| i.r_remote),
-        numbers("IN_PV", &|(i, _)| i.y),
-        counts("IN_PV_QUALITY", &|i| i.quality as u8),
-        counts("IN_MODE", &|i| i.mode as u8),
-        numbers("IN_MAN", &|(i, _)| i.manual.unwrap_or_default()),
-        numbers("IN_FF", &|(i, _)| i.offset),
-        flags("IN_INHIBIT_UP", &|i| i.inhibit_up),
-        flags("IN_ACK", &|i| i.acknowledge),
-        numbers("OUT_OP", &|(_, o)| o.u),
-        numbers("OUT_OP_UNLIM", &|(_, o)| o.v),
-        numbers("OUT_SP_WORK", &|(_, o)| o.r),
-        Column { name: "OUT_STATUS", kind: Type::Word, cells: status },
-    ]
+    let quality = |sample: &Sample<T>| match sample.input.quality {
+        Quality::Good => "2".to_owned(),
+        Quality::Uncertain => "1".to_owned(),
+        Quality::Bad => "0".to_owned(),
+    };
+    let mut columns = vec![
+        number("IN_SP", &|s| s.input.r),
+        number("IN_SP_REMOTE", &|s| s.input.r_remote),
+        number("IN_PV", &|s| s.input.y),
+        number("IN_OP_MAN", &|s| s.input.manual.unwrap_or_default()),
+        number("IN_OP_READBACK", &|s| s.input.u_applied.unwrap_or_default()),
+        number("IN_TRK_VALUE", &|s| s.input.track),
+        number("IN_FF", &|s| s.input.offset),
+        column("IN_PV_QUALITY", Type::Count, &quality),
+        flag("IN_OFF", &|i| i.mode == Mode::Off),
+        flag("IN_TRK", &|i| i.mode == Mode::Track),
+        flag("IN_MAN", &|i| i.mode == Mode::Manual),
+        flag("IN_HOLD", &|i| i.mode == Mode::Hold),
+        flag("IN_CAS", &|i| i.mode == Mode::Cascade),
+        // The others come before it.
+        flag("IN_AUTO", &|_| true),
+        flag("IN_RB_USE", &|i| i.u_applied.is_some()),
+        flag("IN_INHIBIT_UP", &|i| i.inhibit_up),
+        flag("IN_INHIBIT_DN", &|i| i.inhibit_down),
+        flag("IN_ACK", &|i| i.acknowledge),
+        flag("IN_COMPENSATE", &|i| i.compensate),
+    ];
+    if tunable {
+        for (at, name) in TUNING.iter().enumerate() {
+            let value = |s: &Sample<T>| s.tuning.get(at).copied().unwrap_or_default();
+            columns.push(column(&format!("IN_{name}"), Type::Real, &|s| st::decimal(value(s))));
+        }
+    }
+    columns.extend([
+        number("OUT_OP", &|s| s.output.u),
+        number("OUT_OP_UNLIM", &|s| s.output.v),
+        number("OUT_SP_WORKING", &|s| s.output.r),
+        number("OUT_UF", &|s| s.output.u_f),
+        column("OUT_MODE", Type::Count, &|s| mode_code(s.output.mode).to_string()),
+        column("OUT_STATUS", Type::Word, &|s| s.status.to_string()),
+    ]);
+    columns
 }

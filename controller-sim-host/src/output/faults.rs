@@ -40,15 +40,22 @@ impl Problem {
         self.help = Some(help.into());
         self
     }
+
+    /// The same as a warning, for a terminal.
+    #[must_use]
+    pub fn as_warning(&self) -> String {
+        self.shown("warning")
+    }
+
+    fn shown(&self, level: &str) -> String {
+        let help = self.help.as_ref().map_or(String::new(), |help| format!("\n  = help: {help}"));
+        format!("{level}[{}]: {}{help}", self.code, self.message)
+    }
 }
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error[{}]: {}", self.code, self.message)?;
-        if let Some(help) = &self.help {
-            write!(f, "\n  = help: {help}")?;
-        }
-        Ok(())
+        f.write_str(&self.shown("error"))
     }
 }
 

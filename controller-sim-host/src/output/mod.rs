@@ -31,7 +31,7 @@ pub use csv::CsvWriter;
 pub use design::design_table;
 pub use design_json::design_json;
 pub use draft::{Complete, Draft, publish, remove_drafts};
-pub use exported::exported_json;
+pub use exported::{ExportWarnings, exported_json};
 pub use faults::{Problem, Severity, Trouble, render, render_all};
 pub use file::{FileError, FileTarget, is_same_file};
 pub use identification::{Identification, identify_json, identify_table};

@@ -15,6 +15,8 @@ pid = { kp = 1.0, ki = 1.0 }
 name = \"second\"
 pid = { kp = 2.0, ki = 1.0 }
 estimator = { gain = 1.0, a1 = 1.0, a2 = 0.0, dead_time = 1.0, kfd = 0.5, tfd = 0.5 }
+limits = { lo = -10.0, hi = 10.0 }
+measurement = { lo = -5.0, hi = 5.0 }
 ";
 
 #[test]
@@ -47,7 +49,10 @@ fn a_loop_is_written_to_the_screen_or_to_a_file() {
         "f64",
         "--json",
     ]));
-    assert_eq!(keys(&object).join(" "), "version controller format precision ts capacity text saved");
+    assert_eq!(
+        keys(&object).join(" "),
+        "version controller format precision ts capacity text warnings saved"
+    );
     assert!(object["text"].as_str().is_some_and(|text| text.contains("Controller<f64")));
     assert!(object["saved"].is_null());
 }
@@ -122,4 +127,82 @@ fn a_plc_gets_no_adrc() {
     }
     let output = folder.run(&["export", "adrc.toml", "--format", "st", "--json"]);
     assert_eq!((output.status.code(), json(&output)["error"]["code"].as_str()), (Some(3), Some("refused")));
+}
+
+/// Two loops; of each there is something to warn of, and only the first one has its ranges.
+const WARNED: &str = "
+version = 1
+ts = 0.1
+duration = 5.0
+[plant]
+tf = \"1/(1+s)\"
+[[controller]]
+name = \"given\"
+pid = { kp = 1.0, ki = 1.0, kd = 0.1, tf = 0.06 }
+limits = { lo = -5.0, hi = 5.0 }
+measurement = { lo = -3.0, hi = 3.0 }
+[[controller]]
+name = \"open\"
+pid = { kp = 1.0, ki = 1.0, kd = 0.1, tf = 0.07 }
+setpoint = { lo = 0.0, hi = 0.5 }
+[[event]]
+at = 1.0
+setpoint = 1.0
+";
+
+#[test]
+fn only_what_concerns_the_loop_is_warned_of() {
+    let folder = Folder::new("export-warnings");
+    folder.write("two.toml", WARNED);
+    let said = |controller: &str, format: &str| {
+        let output = folder.run(&["export", "two.toml", "--controller", controller, "--format", format]);
+        assert!(output.status.success());
+        text(&output.stderr).to_owned()
+    };
+    for format in ["rust", "st", "st-test", "c"] {
+        let (given, open) = (said("given", format), said("open", format));
+        assert!(
+            given.contains("tf = 0.06") && !given.contains("tf = 0.07") && !given.contains("open"),
+            "{given}"
+        );
+        assert!(
+            open.contains("tf = 0.07") && !open.contains("tf = 0.06") && !open.contains("given"),
+            "{open}"
+        );
+        assert!(open.contains("`setpoint` of `open`"), "{open}");
+        assert!(!given.contains("open-range"), "{given}");
+        assert_eq!(
+            open.matches("warning[open-range]").count(),
+            if format == "rust" { 0 } else { 2 },
+            "{open}"
+        );
+    }
+    let open = said("open", "st");
+    for part in
+        ["`limits = { lo = 0.0, hi = 100.0 }`", "`measurement = { lo = 0.0, hi = 100.0 }`", "-1000000.0"]
+    {
+        assert!(open.contains(part), "`{part}` is not in:\n{open}");
+    }
+    for format in ["st", "st-test", "c"] {
+        let file = |controller| {
+            let arguments = ["export", "two.toml", "--controller", controller, "--format", format];
+            text(&folder.run(&arguments).stdout).to_owned()
+        };
+        assert!(!file("given").contains("WARNING"), "{format}");
+        let open = file("open");
+        assert_eq!(open.matches("WARNING: ").count(), 2, "{open}");
+        assert!(
+            open.contains("key limits with lo and hi") && open.contains("key measurement with"),
+            "{open}"
+        );
+    }
+    let object =
+        json(&folder.run(&["export", "two.toml", "--controller", "open", "--format", "st", "--json"]));
+    let codes: Vec<&str> = object["warnings"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|warning| warning["code"].as_str().expect("a code"))
+        .collect();
+    assert_eq!(codes, ["fast-filter", "clamped", "open-range", "open-range"]);
 }

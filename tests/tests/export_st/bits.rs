@@ -1,15 +1,12 @@
 //! Bit for bit: the statements, compiled as C, against the core's step.
 
 use crate::compiled::{compile, compiler, not_run, run};
-use crate::drive::{Driven, outputs};
 use crate::loops::{all, random, scenario};
 use crate::print_c::{program, wide_program};
 use crate::recorded::Recorded;
-use controller_core::{Mode, Quality, Real, Status};
-use controller_sim_host::export::Export;
-use controller_sim_host::export::block::Role;
+use controller_core::{Real, Status};
 use controller_sim_host::scenario::{ControllerSpec, Scenario};
-use controller_sim_host::simulate::{AnyLaw, Precision};
+use controller_sim_host::simulate::Precision;
 
 const SAMPLES: u32 = 10_000;
 
@@ -92,42 +89,4 @@ fn loops_of_random_parts_step_with_the_bits_of_the_core() {
             _ => one::<f64>(cc, &scenario, spec, Precision::F64, true),
         };
     }
-}
-
-/// A number that is no mode leaves the last one and says so; one that is no quality counts as bad.
-#[test]
-fn numbers_that_mean_nothing() {
-    let Some(cc) = compiler() else { return not_run("unknown modes and qualities", "no C compiler") };
-    let scenario = scenario(all());
-    let spec = &scenario.controllers[0];
-    let export = Export::new(&scenario, spec, Precision::F32, None).expect("a loop");
-    let block = export.block("test").expect("a block");
-    let mut driven = Driven::<f32>::new(&scenario, spec, &block, export.capacity(), 3, false);
-    let mut law = AnyLaw::<f32>::new(spec, scenario.ts, scenario.latency, export.capacity()).expect("a law");
-    let inputs: Vec<&str> =
-        block.variables.iter().filter(|v| v.role == Role::Input).map(|v| v.name.as_str()).collect();
-    let at = |name: &str| inputs.iter().position(|input| *input == name).expect("an input");
-    let (mode, quality) = (at("MODE"), at("PV_QUALITY"));
-    let (mut records, mut expected, mut last) = (Vec::new(), Vec::new(), Mode::Hold);
-    for k in 0..2000_u32 {
-        let (mut sample, ..) = driven.sample(k);
-        let mut record = sample.record(&block);
-        let unknown = k % 7 == 3;
-        if unknown {
-            record[mode] = [7.0, -1.0, 2_147_483_647.0, -2_147_483_648.0][k as usize % 4];
-            sample.input.mode = last;
-        }
-        if k % 11 == 5 {
-            record[quality] = [3.0, -1.0, 255.0][k as usize % 3];
-            sample.input.quality = Quality::Bad;
-        }
-        last = sample.input.mode;
-        let mut out = law.step(&sample.input);
-        out.status |= Status::REJECTED.when(unknown);
-        records.extend(record);
-        expected.extend(outputs(&block, &out, false));
-    }
-    let program = compile(cc, "unknown", &program(&block, Precision::F32), &["-O1"]);
-    let bits = |list: &[f64]| list.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-    assert!(bits(&run(&program, &records)) == bits(&expected));
 }

@@ -1,23 +1,37 @@
 //! A function block as a C program: reads one record of inputs per sample, writes one of outputs.
 
 use controller_sim_host::export::block::{
-    Block, Expression, Initial, Operator, Place, Role, Statement, Type, Variable,
+    Block, Expression, Operator, Place, Role, Statement, Type, Variable,
 };
 use controller_sim_host::simulate::Precision;
+use std::collections::HashMap;
 use std::fmt::Write;
 
 /// The program. Records are doubles, in the order in which the block declares its inputs and outputs.
 pub(crate) fn program(block: &Block, precision: Precision) -> String {
-    source(block, precision, false)
+    source(block, precision, false, &Memory::Bytes(0))
+}
+
+/// What the memory holds before the first sample.
+pub(crate) enum Memory<'a> {
+    /// This byte everywhere.
+    Bytes(u8),
+    /// The values of some variables by name, the cells of arrays alike; zero elsewhere.
+    Values(&'a HashMap<String, f64>),
+}
+
+/// The same program on memory that has been used before.
+pub(crate) fn program_on(block: &Block, precision: Precision, memory: &Memory<'_>) -> String {
+    source(block, precision, false, memory)
 }
 
 /// The same program with every operation formed in double precision and rounded by its assignment.
 pub(crate) fn wide_program(block: &Block) -> String {
-    source(block, Precision::F32, true)
+    source(block, Precision::F32, true, &Memory::Bytes(0))
 }
 
-fn source(block: &Block, precision: Precision, wide: bool) -> String {
-    let mut out = String::from("#include <stdint.h>\n#include <stdio.h>\n");
+fn source(block: &Block, precision: Precision, wide: bool, memory: &Memory<'_>) -> String {
+    let mut out = String::from("#include <stdint.h>\n#include <stdio.h>\n#include <string.h>\n");
     let real = match precision {
         Precision::F32 => "float",
         Precision::F64 => "double",
@@ -33,6 +47,7 @@ fn source(block: &Block, precision: Precision, wide: bool) -> String {
     let named = |role: Role| block.variables.iter().filter(move |v| v.role == role);
     let (inputs, outputs) = (named(Role::Input).count(), named(Role::Output).count());
     let _ = writeln!(out, "int main(void)\n{{\n    double in[{inputs}], out[{outputs}];");
+    fill(&mut out, block, memory);
     let _ = writeln!(out, "    while (fread(in, sizeof(double), {inputs}, stdin) == {inputs}) {{");
     for (n, v) in named(Role::Input).enumerate() {
         let _ = writeln!(out, "        {} = ({})in[{n}];", name(&v.name), kind(v.kind));
@@ -44,6 +59,35 @@ fn source(block: &Block, precision: Precision, wide: bool) -> String {
     let _ =
         writeln!(out, "        fwrite(out, sizeof(double), {outputs}, stdout);\n    }}\n    return 0;\n}}");
     out
+}
+
+/// The statements that bring the memory into its state; inputs come from the records.
+fn fill(out: &mut String, block: &Block, memory: &Memory<'_>) {
+    for v in block.variables.iter().filter(|v| v.role != Role::Input) {
+        let at = name(&v.name);
+        match memory {
+            Memory::Bytes(byte) => {
+                let _ = writeln!(out, "    memset(&{at}, {byte}, sizeof {at});");
+            }
+            Memory::Values(values) => {
+                let Some(value) = values.get(&v.name) else { continue };
+                let value = match value {
+                    _ if value.is_nan() => "(0.0 / 0.0)".to_owned(),
+                    _ => format!("{value:.17e}"),
+                };
+                let _ = match v.cells {
+                    None => writeln!(out, "    {at} = ({}){value};", kind(v.kind)),
+                    Some(cells) => {
+                        writeln!(
+                            out,
+                            "    for (int k = 0; k < {cells}; k++) {{ {at}[k] = ({}){value}; }}",
+                            kind(v.kind)
+                        )
+                    }
+                };
+            }
+        }
+    }
 }
 
 /// Names of the block behind a prefix: C has its own.
@@ -61,21 +105,12 @@ fn kind(kind: Type) -> &'static str {
     }
 }
 
+/// Memory begins as zero bytes: no initial value is applied, inputs come from the records.
 fn declare(out: &mut String, v: &Variable) {
-    let (kind, name) = (kind(v.kind), name(&v.name));
-    let initial = match &v.initial {
-        Initial::Zero => "{0}".to_owned(),
-        // As a translator of Structured Text does it: decimal, double, then the type.
-        Initial::Number(value) => format!("({kind}){value:.17e}"),
-        Initial::Count(n) => n.to_string(),
-        Initial::Word(bits) => format!("{bits}u"),
-        Initial::Flag(is) => i32::from(*is).to_string(),
-    };
     let cells = v.cells.map_or(String::new(), |cells| format!("[{cells}]"));
-    let initial = if v.cells.is_none() && initial == "{0}" { "0".to_owned() } else { initial };
     // Every variable must be used, but for the names, which are the same in every block.
     let scope = if v.role == Role::Named { "" } else { "static " };
-    let _ = writeln!(out, "{scope}{kind} {name}{cells} = {initial};");
+    let _ = writeln!(out, "{scope}{} {}{cells};", kind(v.kind), name(&v.name));
 }
 
 fn all(out: &mut String, statements: &[Statement]) {
@@ -114,6 +149,9 @@ fn expression(value: &Expression) -> String {
         Expression::Variable(of) => name(of),
         Expression::Cell(array, index) => format!("{}[{}]", name(array), name(index)),
         Expression::Count(n) => n.to_string(),
+        // As a translator of Structured Text does it: decimal, double, then the type of the variable.
+        Expression::Number(value) => format!("{value:.17e}"),
+        Expression::Word(bits) => format!("{bits}u"),
         Expression::Flag(is) => i32::from(*is).to_string(),
         Expression::Operation(operator, a, b) => {
             let sign = match operator {

@@ -61,9 +61,9 @@ impl<T: Real> Recorded<T> {
         begin(&mut driven);
         let (mut records, mut expected) = (Vec::new(), Vec::new());
         for k in samples {
-            let (sample, out, refused) = driven.sample(k);
+            let (sample, out, more) = driven.sample(k);
             records.extend(sample.record(&block));
-            expected.push((sample, outputs(&block, &out, refused)));
+            expected.push((sample, outputs(&block, &out, &more)));
         }
         Self { name, block, records, samples: expected, driven }
     }

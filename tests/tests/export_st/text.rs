@@ -48,11 +48,14 @@ fn numbers_are_the_exact_values_of_the_type() {
     for line in [
         "    KP : REAL := 0.800000011920929;",
         "    TF : REAL := 0.029999999329447746;",
-        "    LARGEST : REAL := 3.4028234663852886E38;",
-        "    L_ONE : LREAL := 1.0;",
+        "    LARGEST : REAL;",
+        "    LARGEST := 3.4028234663852886E38;",
+        "    L_ONE : LREAL;",
+        "    L_ONE := 1.0;",
         "    DELAY : ARRAY [0..10] OF REAL;",
-        "    MODE : DINT := 2;",
-        "    ST_ALARM_DEV : DWORD := 1048576; (* bit 20: alarm deviation *)",
+        "    PV_QUALITY : DINT := 2;",
+        "    ST_ALARM_DEV : DWORD; (* bit 20: alarm deviation *)",
+        "    ST_ALARM_DEV := 1048576;",
     ] {
         assert!(single.lines().any(|l| l.starts_with(line)), "`{line}` is not in:\n{single}");
     }
@@ -61,7 +64,7 @@ fn numbers_are_the_exact_values_of_the_type() {
     assert!(!double.contains("_TO_"), "there is nothing to convert");
 }
 
-/// No number with a point stands in a statement, no function that treats NaN in its own way, one operation in each.
+/// No number with a point stands in a statement but alone, no function that treats NaN in its own way, one operation in each.
 #[test]
 fn statements_hold_one_operation_and_no_number() {
     for spec in all() {
@@ -72,7 +75,10 @@ fn statements_hold_one_operation_and_no_number() {
                 .as_bytes()
                 .windows(3)
                 .any(|w| w[0].is_ascii_digit() && w[1] == b'.' && w[2].is_ascii_digit());
-            assert!(!literal, "{line}");
+            let alone = line
+                .split_once(" := ")
+                .is_some_and(|(_, value)| value.trim_end_matches(';').parse::<f64>().is_ok());
+            assert!(!literal || alone, "{line}");
             if let Some((_, value)) = line.split_once(":=") {
                 let operations = value.matches([' ']).filter(|_| false).count()
                     + ["+", "-", "*", "/"]

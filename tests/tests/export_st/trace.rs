@@ -3,17 +3,17 @@
 use crate::compiled::{compile, compiler, not_run, run};
 use crate::loops::{all, scenario};
 use crate::print_c::program;
-use controller_sim_host::export::block::{Block, Initial, Role};
+use controller_sim_host::export::block::{Block, Expression, Initial, Place, Role, Statement};
 use controller_sim_host::export::{Export, Format};
 use controller_sim_host::simulate::Precision;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The arrays of the program, by name, as a reader of its text finds them.
 fn arrays(text: &str) -> HashMap<String, Vec<f64>> {
     let mut arrays: HashMap<String, Vec<f64>> = HashMap::new();
     for line in text.lines().map(str::trim) {
-        if let Some((name, _)) = line.split_once(" : ARRAY [0..119] OF ") {
-            arrays.insert(name.to_owned(), vec![0.0; 120]);
+        if let Some((name, _)) = line.split_once(" : ARRAY [0..219] OF ") {
+            arrays.insert(name.to_owned(), vec![0.0; 220]);
         }
         let Some((place, value)) = line.trim_end_matches(';').split_once(" := ") else { continue };
         let Some((name, index)) = place.split_once('[') else { continue };
@@ -54,7 +54,7 @@ fn differing(
             .zip(out)
             .filter_map(|(v, x)| trace.get(&format!("OUT_{}", v.name)).map(|column| column[k] == *x));
         let compared: Vec<bool> = compared.collect();
-        assert_eq!(compared.len(), 4);
+        assert_eq!(compared.len(), 6);
         compared.iter().all(|same| *same)
     };
     given.chunks(width).enumerate().filter(|(k, out)| !same(out, *k)).count()
@@ -69,20 +69,34 @@ fn the_test_program_passes_on_its_block_and_on_no_other() {
             let export = Export::new(&scenario, spec, precision, None).expect("a loop");
             let mut block = export.block("test").expect("a block");
             let trace = arrays(&export.text(Format::StructuredTextTest, "test").expect("a program"));
-            assert_eq!(trace["IN_SP"].len(), 120);
+            assert_eq!(trace["IN_SP"].len(), 220);
             let name = format!("trace {} {precision:?}", spec.name).replace([' ', ','], "_");
             assert_eq!(differing(cc, &name, &block, precision, &trace), 0, "{name}");
             let status = trace["OUT_STATUS"].iter().fold(0, |all, bits| all | *bits as u32);
             assert!(status & 0xA0 == 0xA0 || spec.config.fallback.hold_samples == 0, "{name}: {status:x}");
+            let modes: HashSet<u32> = trace["OUT_MODE"].iter().map(|mode| *mode as u32).collect();
+            let held = spec.config.fallback.hold_samples < 7;
+            assert!(
+                (1..=6).all(|mode| modes.contains(&mode)) && modes.contains(&7) == held,
+                "{name}: {modes:?}"
+            );
+            assert!(spec.config.pid.kp == 0.0 || status & 1 << 26 != 0, "{name}: nothing was refused");
             // The gain of a step of the measurement a thousandth away.
-            let gain = block.variables.iter_mut().find(|v| v.name == "H_Y").expect("a coefficient");
-            if let Initial::Number(x) = &mut gain.initial {
-                *x = match precision {
-                    Precision::F32 => f64::from((*x * 1.001) as f32),
-                    Precision::F64 => *x * 1.001,
-                };
-            }
+            let gain = value_of(&mut block.body, "H_Y").expect("a coefficient");
+            *gain = match precision {
+                Precision::F32 => f64::from((*gain * 1.001) as f32),
+                Precision::F64 => *gain * 1.001,
+            };
             assert!(differing(cc, &format!("{name}_other"), &block, precision, &trace) > 10, "{name}");
         }
     }
+}
+
+/// The number that the block gives a variable when it begins.
+fn value_of<'a>(statements: &'a mut [Statement], name: &str) -> Option<&'a mut f64> {
+    let Some(Statement::If(branches, _)) = statements.first_mut() else { return None };
+    branches.first_mut()?.1.iter_mut().find_map(|statement| match statement {
+        Statement::Assign(Place::Variable(place), Expression::Number(value)) if place == name => Some(value),
+        _ => None,
+    })
 }

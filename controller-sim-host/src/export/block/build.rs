@@ -1,6 +1,6 @@
 //! Puts a block together: sums and products of any depth become assignments of one operation each.
 
-use super::{Block, Expression, Initial, Operator, Place, Role, Statement, Type, Variable, x};
+use super::{Block, Expression, Initial, Operator, Place, Role, Statement, Type, Variable, fingerprint, x};
 use std::collections::{HashMap, HashSet};
 
 /// A block under construction.
@@ -10,6 +10,9 @@ pub struct Builder {
     kinds: HashMap<String, Type>,
     /// Statements of the part that is being written, the outer ones before it.
     open: Vec<Vec<Statement>>,
+    /// What stands before and behind the values of a new design.
+    before: Vec<Statement>,
+    after: Vec<Statement>,
     /// Scratch variables in use by the assignment being written, and the most that were ever: of `Real`, of `Long`.
     scratch: [usize; 2],
     most: [usize; 2],
@@ -93,9 +96,16 @@ impl Builder {
         self.push(Statement::Repeat { counter: counter.to_owned(), first, last, body });
     }
 
-    /// The block, without the constants and the scratch variables that nothing uses.
+    /// What is done when the design is not the one in force, before and after every variable but the inputs and outputs
+    /// takes the value that it begins with.
+    pub fn anew(&mut self, before: impl FnOnce(&mut Self), after: impl FnOnce(&mut Self)) {
+        self.before = self.part(before);
+        self.after = self.part(after);
+    }
+
+    /// The block, without the constants and the scratch variables that nothing uses. `head` is given the design's number.
     #[must_use]
-    pub fn finish(mut self, name: &str, head: Vec<String>) -> Block {
+    pub fn finish(mut self, name: &str, head: impl FnOnce(i32) -> Vec<String>) -> Block {
         for (kind, most) in [(Type::Real, self.most[0]), (Type::Long, self.most[1])] {
             for n in 1..=most {
                 self.declare(
@@ -107,13 +117,31 @@ impl Builder {
                 );
             }
         }
-        let body = self.open.pop().unwrap_or_default();
+        let mut body = self.open.pop().unwrap_or_default();
         let mut used = HashSet::new();
-        names(&body, &mut used);
+        for part in [&self.before, &self.after, &body] {
+            names(part, &mut used);
+        }
         self.variables.retain(|variable| {
             !matches!(variable.role, Role::Constant | Role::Scratch) || used.contains(&variable.name)
         });
-        Block { name: name.to_owned(), head, variables: self.variables, body }
+        let mut begin = self.before;
+        begin.extend(self.variables.iter().filter_map(value));
+        begin.append(&mut self.after);
+        let design = fingerprint::number(&self.variables, [&begin, &body]);
+        let in_force = || Expression::Variable(IN_FORCE.to_owned());
+        let number = || Expression::Count(design);
+        begin.push(Statement::Assign(Place::Variable(IN_FORCE.to_owned()), number()));
+        body.insert(0, Statement::If(vec![(in_force().is(number()).opposite(), begin)], Vec::new()));
+        self.variables.push(Variable {
+            name: IN_FORCE.to_owned(),
+            kind: Type::Count,
+            cells: None,
+            role: Role::State,
+            initial: Initial::Zero,
+            comment: "number of the design that the other variables are of".to_owned(),
+        });
+        Block { name: name.to_owned(), head: head(design), design, variables: self.variables, body }
     }
 
     fn part(&mut self, body: impl FnOnce(&mut Self)) -> Vec<Statement> {
@@ -135,6 +163,8 @@ impl Builder {
                 self.kinds.get(name).copied().unwrap_or(Type::Real)
             }
             Expression::Count(_) => Type::Count,
+            Expression::Number(_) => Type::Real,
+            Expression::Word(_) => Type::Word,
             Expression::Flag(_) | Expression::Not(_) => Type::Flag,
             Expression::Operation(operator, ..) if operator.is_comparison() => Type::Flag,
             Expression::Operation(_, a, _) | Expression::Negative(a) => self.kind(a),
@@ -177,6 +207,26 @@ impl Builder {
     }
 }
 
+/// The variable with the number of the design that the others are of; 0: none.
+pub const IN_FORCE: &str = "DESIGN_IN_FORCE";
+
+/// The statement that gives a variable of the block's own what it begins with. Arrays are left to the block.
+fn value(variable: &Variable) -> Option<Statement> {
+    let own = matches!(variable.role, Role::Named | Role::Constant | Role::Coefficient | Role::State);
+    let value = match (&variable.initial, variable.kind) {
+        (Initial::Zero, Type::Flag) => Expression::Flag(false),
+        (Initial::Zero, Type::Count) => Expression::Count(0),
+        (Initial::Zero, Type::Word) => Expression::Word(0),
+        (Initial::Zero, Type::Real | Type::Long) => Expression::Number(0.0),
+        (Initial::Number(value), _) => Expression::Number(*value),
+        (Initial::Count(n), _) => Expression::Count(*n),
+        (Initial::Word(bits), _) => Expression::Word(*bits),
+        (Initial::Flag(is), _) => Expression::Flag(*is),
+    };
+    let place = Place::Variable(variable.name.clone());
+    (own && variable.cells.is_none()).then_some(Statement::Assign(place, value))
+}
+
 /// Name of the n-th scratch variable.
 fn scratch(kind: Type, n: usize) -> String {
     if kind == Type::Long { format!("L_TMP{n}") } else { format!("TMP{n}") }
@@ -215,7 +265,7 @@ fn names_of(value: &Expression, used: &mut HashSet<String>) {
             used.insert(name.clone());
         }
         Expression::Cell(array, index) => used.extend([array.clone(), index.clone()]),
-        Expression::Count(_) | Expression::Flag(_) => {}
+        Expression::Count(_) | Expression::Number(_) | Expression::Word(_) | Expression::Flag(_) => {}
         Expression::Operation(_, a, b) => {
             names_of(a, used);
             names_of(b, used);

@@ -261,7 +261,13 @@ impl Check<'_> {
                             self.variable(array, true)
                         }
                     };
-                    let given = self.kind(value, true);
+                    let given = match value {
+                        Expression::Number(number) if number.is_finite() => {
+                            expected.filter(|kind| matches!(kind, Type::Real | Type::Long))
+                        }
+                        Expression::Word(_) => Some(Type::Word),
+                        _ => self.kind(value, true),
+                    };
                     if expected != given {
                         self.fault(format!("{place:?} is given another type: {value:?}"));
                     }
@@ -311,6 +317,10 @@ impl Check<'_> {
                 self.variable(array, true)
             }
             Expression::Count(_) => Some(Type::Count),
+            Expression::Number(_) | Expression::Word(_) => {
+                self.fault(format!("a number within an expression: {value:?}"));
+                None
+            }
             Expression::Flag(_) => Some(Type::Flag),
             Expression::Not(a) => {
                 let kind = self.kind(a, false);

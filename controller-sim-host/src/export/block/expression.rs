@@ -53,6 +53,10 @@ pub enum Expression {
     Cell(String, String),
     /// A whole number.
     Count(i32),
+    /// A number, of the type of the variable that it is assigned to; part of no operation.
+    Number(f64),
+    /// Bits; part of no operation.
+    Word(u32),
     /// True or false.
     Flag(bool),
     /// An operator with its operands.

@@ -6,8 +6,9 @@
 mod build;
 mod check;
 mod expression;
+mod fingerprint;
 
-pub use build::Builder;
+pub use build::{Builder, IN_FORCE};
 pub use expression::{Expression, Operator, number, x};
 
 /// Type of a variable.
@@ -28,7 +29,7 @@ pub enum Type {
 /// What a variable is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// Given by the caller before a sample.
+    /// Given by the caller before a sample; the only ones with a value of their own before the first sample.
     Input,
     /// Read by the caller after it.
     Output,
@@ -44,7 +45,7 @@ pub enum Role {
     Scratch,
 }
 
-/// What a variable holds before the first sample.
+/// What a variable begins with: an input by its declaration, every other one by a statement, when the design changes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
     /// Zero or false.
@@ -70,7 +71,7 @@ pub struct Variable {
     pub cells: Option<usize>,
     /// What it is for.
     pub role: Role,
-    /// What it holds at the start.
+    /// What it begins with.
     pub initial: Initial,
     /// What it is, with its unit.
     pub comment: String,
@@ -114,6 +115,8 @@ pub struct Block {
     pub name: String,
     /// Lines about the whole.
     pub head: Vec<String>,
+    /// The number of the design: never 0, another one for other statements or values.
+    pub design: i32,
     /// Its variables.
     pub variables: Vec<Variable>,
     /// What it does in one sample.

@@ -8,6 +8,8 @@ use super::plan::Plan;
 pub(super) fn read(b: &mut Builder, plan: &Plan) {
     b.set("STATUS", x("ST_NONE"));
     b.set("OFFSET_BEFORE", x("OFFSET"));
+    b.when(x("ACK"), |b| b.set("STATE_LOST", flag(false)));
+    b.when(x("STATE_LOST"), |b| status(b, "ST_STATE_LOST"));
     mode(b);
     measurement(b, plan);
     setpoint(b);
@@ -20,13 +22,28 @@ fn flag(is: bool) -> Expression {
     Expression::Flag(is)
 }
 
+/// The flags that ask for modes, the one that counts first before the others.
+const WISHES: [(&str, &str); 6] = [
+    ("OFF", "MODE_OFF"),
+    ("TRK", "MODE_TRK"),
+    ("MAN", "MODE_MAN"),
+    ("HOLD", "MODE_HOLD"),
+    ("CAS", "MODE_CAS"),
+    ("AUTO", "MODE_AUTO"),
+];
+
 fn mode(b: &mut Builder) {
-    b.note("mode asked for; a number that is no mode leaves the last one");
-    b.either(
-        x("MODE").at_least(x("MODE_OFF")).and(x("MODE").at_most(x("MODE_FALLBACK"))),
-        |b| b.set("MODE_ASKED", x("MODE")),
-        |b| status(b, "ST_REJECTED"),
-    );
+    b.note("mode asked for: the first of OFF, TRK, MAN, HOLD, CAS, AUTO that is TRUE; none: hold");
+    first_of(b, &WISHES);
+}
+
+fn first_of(b: &mut Builder, wishes: &[(&str, &str)]) {
+    match wishes {
+        [] => b.set("MODE_ASKED", x("MODE_HOLD")),
+        [(flag, mode), rest @ ..] => {
+            b.either(x(flag), |b| b.set("MODE_ASKED", x(mode)), |b| first_of(b, rest));
+        }
+    }
 }
 
 fn measurement(b: &mut Builder, plan: &Plan) {
@@ -35,7 +52,7 @@ fn measurement(b: &mut Builder, plan: &Plan) {
     b.set("RESETTLE", flag(false));
     b.set("HOLDING", flag(false));
     b.set("AWAITING", flag(false));
-    let in_range = x("PV").at_least(x("PV_LO")).and(x("PV").at_most(x("PV_HI")));
+    let in_range = x("PV").at_least(x("PV_MIN")).and(x("PV").at_most(x("PV_MAX")));
     let quality = x("PV_QUALITY").is(x("Q_GOOD")).or(x("PV_QUALITY").is(x("Q_UNCERTAIN")));
     b.set("GOOD", in_range.and(quality));
     let use_it = |b: &mut Builder| {
@@ -65,7 +82,7 @@ fn measurement(b: &mut Builder, plan: &Plan) {
         |b| {
             status(b, "ST_BAD_INPUT");
             b.either(
-                x("BAD_COUNT").at_least(x("HOLD_SAMPLES")),
+                x("BAD_COUNT").at_least(x("FAIL_HOLD")),
                 |b| b.set("IN_FALLBACK", flag(true)),
                 |b| b.set("BAD_COUNT", x("BAD_COUNT") + number(1)),
             );
@@ -84,16 +101,16 @@ fn measurement(b: &mut Builder, plan: &Plan) {
 fn setpoint(b: &mut Builder) {
     b.note("set-point: local, or remote in Cascade; into its range, the last good one if not finite");
     b.set("SP_ASKED", x("SP"));
-    b.when(x("MODE_ASKED").is(x("MODE_CAS")), |b| b.set("SP_ASKED", x("SP_CAS")));
+    b.when(x("MODE_ASKED").is(x("MODE_CAS")), |b| b.set("SP_ASKED", x("SP_REMOTE")));
     b.set("SP_FINITE", finite("SP_ASKED"));
     b.either(
         x("SP_FINITE"),
         |b| {
             b.either(
-                x("SP_ASKED").above(x("SP_LO")).and(x("SP_ASKED").below(x("SP_HI"))),
+                x("SP_ASKED").above(x("SP_LIM_LO")).and(x("SP_ASKED").below(x("SP_LIM_HI"))),
                 |b| b.set("R_ASKED", x("SP_ASKED")),
                 |b| {
-                    clamp(b, "R_ASKED", "SP_ASKED", "SP_LO", "SP_HI");
+                    clamp(b, "R_ASKED", "SP_ASKED", "SP_LIM_LO", "SP_LIM_HI");
                     b.when(x("R_ASKED").is(x("SP_ASKED")).opposite(), |b| status(b, "ST_SP_LIMITED"));
                 },
             );
@@ -106,39 +123,34 @@ fn offset(b: &mut Builder) {
     b.note("feed-forward: into its range, the last good one if not finite");
     b.set("FF_FINITE", finite("FF"));
     b.either(
-        x("FF").at_least(x("FF_LO")).and(x("FF").at_most(x("FF_HI"))),
+        x("FF").at_least(x("FF_MIN")).and(x("FF").at_most(x("FF_MAX"))),
         |b| b.set("OFFSET", x("FF")),
         |b| {
             b.set("ACC_T", x("OFFSET"));
             b.either(x("FF_FINITE"), |b| b.set("ACC_T", x("FF")), |b| status(b, "ST_REJECTED"));
-            clamp(b, "OFFSET", "ACC_T", "FF_LO", "FF_HI");
+            clamp(b, "OFFSET", "ACC_T", "FF_MIN", "FF_MAX");
         },
     );
 }
 
 fn manual_and_track(b: &mut Builder) {
     b.note("manual and track outputs, into the output's range");
-    b.set("MAN_FINITE", finite("MAN"));
-    clamp(b, "MAN_OP", "MAN", "OP_LO", "OP_HI");
-    b.set("TRK_FINITE", finite("TRK"));
-    clamp(b, "TRK_OP", "TRK", "OP_LO", "OP_HI");
-    let manual = x("MODE_ASKED").is(x("MODE_MAN")).and(x("MAN_ON")).and(x("MAN_FINITE").opposite());
+    b.set("MAN_FINITE", finite("OP_MAN"));
+    clamp(b, "MAN_WITHIN", "OP_MAN", "OP_LIM_LO", "OP_LIM_HI");
+    b.set("TRK_FINITE", finite("TRK_VALUE"));
+    clamp(b, "TRK_WITHIN", "TRK_VALUE", "OP_LIM_LO", "OP_LIM_HI");
+    let manual = x("MODE_ASKED").is(x("MODE_MAN")).and(x("MAN_FINITE").opposite());
     let track = x("MODE_ASKED").is(x("MODE_TRK")).and(x("TRK_FINITE").opposite());
     b.when(manual.or(track), |b| status(b, "ST_REJECTED"));
 }
 
 fn applied(b: &mut Builder) {
-    b.when(x("AWAKE").opposite(), |b| {
-        b.set("AWAKE", flag(true));
-        b.set("U", x("OP_INITIAL"));
-        b.set("U_C", x("ZERO"));
-    });
     b.note("output that was applied: the read-back, or the last output");
     b.set("APPLIED", x("U"));
-    b.when(x("BKCAL_ON"), |b| {
+    b.when(x("RB_USE"), |b| {
         b.either(
-            finite("BKCAL_IN"),
-            |b| clamp(b, "APPLIED", "BKCAL_IN", "OP_LO", "OP_HI"),
+            finite("OP_READBACK"),
+            |b| clamp(b, "APPLIED", "OP_READBACK", "OP_LIM_LO", "OP_LIM_HI"),
             |b| status(b, "ST_REJECTED"),
         );
     });

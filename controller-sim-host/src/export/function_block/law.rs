@@ -36,18 +36,18 @@ pub(super) fn increment(b: &mut Builder, to: &str, r: &str, y: &str) {
 pub(super) fn allowed(b: &mut Builder, to: &str, from: &str) {
     b.set(to, x(from));
     let up = x("INHIBIT_UP").and(x(from).above(x("ZERO")));
-    let down = x("INHIBIT_DOWN").and(x(from).below(x("ZERO")));
+    let down = x("INHIBIT_DN").and(x(from).below(x("ZERO")));
     b.when(up.or(down), |b| b.set(to, x("ZERO")));
 }
 
 /// The correction of the anti-windup for the sample before, `applied` being the output that was applied.
 pub(super) fn unwind(b: &mut Builder, plan: &Plan, to: &str, applied: &str) {
     let track = |b: &mut Builder| b.set(to, x("AW_GAIN") * (x(applied) - x("V")));
-    if plan.numbers.conditional {
+    if plan.conditional() {
         b.note("anti-windup: the last increment is taken back when it drove further into the limit");
         let up = x("V").above(x(applied)).and(x("INC").above(x("ZERO")));
         let down = x("V").below(x(applied)).and(x("INC").below(x("ZERO")));
-        b.either(up.or(down), |b| b.set(to, -x("INC")), track);
+        b.either(x("AW_TAKES_BACK").and(up.or(down)), |b| b.set(to, -x("INC")), track);
     } else {
         b.note("anti-windup: min(1, TS/TT)*(applied - wanted) of the last sample");
         track(b);

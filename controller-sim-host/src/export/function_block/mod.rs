@@ -1,6 +1,7 @@
 //! A loop as a function block: the statements of one sample, in the order and with the operations of
 //! `controller_core::Controller::step`.
 
+mod anew;
 mod compensator;
 mod declare;
 mod inputs;
@@ -16,15 +17,17 @@ use super::Export;
 use super::block::{Block, Builder, x};
 use plan::Plan;
 
-/// The block; `None` for an ADRC. `head` gives its first lines for a loop that can be tuned on site or not.
+/// The block; `None` for an ADRC. `head` gives its first lines for a loop that can be tuned on site or not, and for the
+/// number of the design.
 pub(super) fn block(
     export: &Export<'_>,
     name: &str,
-    head: impl FnOnce(bool) -> Vec<String>,
+    head: impl FnOnce(bool, i32) -> Vec<String>,
 ) -> Option<Block> {
     let plan = Plan::new(export)?;
     let mut b = Builder::new();
     declare::all(&mut b, &plan);
+    anew::begin(&mut b, &plan);
     tuning::retune(&mut b, &plan);
     inputs::read(&mut b, &plan);
     tuning::refused(&mut b, &plan);
@@ -34,7 +37,7 @@ pub(super) fn block(
         |b| sample(b, &plan),
     );
     outputs::write(&mut b, &plan);
-    Some(b.finish(name, head(plan.tuning.is_some())))
+    Some(b.finish(name, |design| head(plan.tuning.is_some(), design)))
 }
 
 /// A sample of an instance that has, or gets, a measurement.

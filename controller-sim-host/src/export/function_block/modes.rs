@@ -17,13 +17,7 @@ pub(super) fn in_force(b: &mut Builder) {
     b.set("MODE_DUE", x("MODE_ASKED"));
     let first = x("MODE_ASKED").is(x("MODE_OFF")).or(x("MODE_ASKED").is(x("MODE_TRK")));
     b.when(first.opposite(), |b| {
-        b.either(
-            x("IN_FALLBACK"),
-            |b| b.set("MODE_DUE", x("MODE_FALLBACK")),
-            |b| {
-                b.when(x("MODE_ASKED").is(x("MODE_FALLBACK")), |b| b.set("MODE_DUE", x("MODE_HOLD")));
-            },
-        );
+        b.when(x("IN_FALLBACK"), |b| b.set("MODE_DUE", x("MODE_FALLBACK")));
     });
 }
 
@@ -37,13 +31,13 @@ pub(super) fn target(b: &mut Builder, plan: &Plan, mode: &str) {
         b.set("TARGET_GIVEN", Expression::Flag(true));
     };
     let is = |of: &str| x(mode).is(x(of));
-    b.when(is("MODE_MAN").and(x("MAN_ON")).and(x("MAN_FINITE")), |b| to(b, "MAN_OP"));
-    b.when(is("MODE_TRK").and(x("TRK_FINITE")), |b| to(b, "TRK_OP"));
+    b.when(is("MODE_MAN").and(x("MAN_FINITE")), |b| to(b, "MAN_WITHIN"));
+    b.when(is("MODE_TRK").and(x("TRK_FINITE")), |b| to(b, "TRK_WITHIN"));
     if n.off_output.is_some() {
-        b.when(is("MODE_OFF"), |b| to(b, "OP_OFF"));
+        b.when(is("MODE_OFF"), |b| to(b, "OFF_OP"));
     }
     if n.fallback_output.is_some() {
-        b.when(is("MODE_FALLBACK"), |b| to(b, "OP_FALLBACK"));
+        b.when(is("MODE_FALLBACK"), |b| to(b, "FAIL_OP"));
     }
 }
 
@@ -61,8 +55,8 @@ pub(super) fn limiter_steps(b: &mut Builder, plan: &Plan) {
 
 /// The bits of the limiter after `U_LIMITED` and `RATE_HELD`.
 pub(super) fn limit_bits(b: &mut Builder) {
-    b.when(x("U_LIMITED").at_least(x("OP_HI")), |b| status(b, "ST_LIMITED_HIGH"));
-    b.when(x("U_LIMITED").at_most(x("OP_LO")), |b| status(b, "ST_LIMITED_LOW"));
+    b.when(x("U_LIMITED").at_least(x("OP_LIM_HI")), |b| status(b, "ST_LIMITED_HIGH"));
+    b.when(x("U_LIMITED").at_most(x("OP_LIM_LO")), |b| status(b, "ST_LIMITED_LOW"));
     b.when(x("RATE_HELD"), |b| status(b, "ST_RATE_LIMITED"));
 }
 
@@ -72,14 +66,14 @@ pub(super) fn use_compensator(b: &mut Builder, plan: &Plan) {
         return;
     }
     b.note("compensator in or out of the sum: the integral term takes the difference");
-    b.when(x("COMPENSATING").and(x("COMP_ON").opposite()), |b| {
+    b.when(x("COMPENSATING").and(x("COMPENSATE").opposite()), |b| {
         super::parts::add(b, "I_SUM", "I_SUM_C", x("UF_NEW"));
     });
-    b.when(x("COMP_ON").and(x("COMPENSATING").opposite()), |b| {
+    b.when(x("COMPENSATE").and(x("COMPENSATING").opposite()), |b| {
         super::parts::add(b, "I_SUM", "I_SUM_C", -x("UF_NEW"));
     });
-    b.set("COMPENSATING", x("COMP_ON"));
-    b.either(x("COMP_ON"), |b| b.set("U_F", x("UF_NEW")), |b| b.set("U_F", x("ZERO")));
+    b.set("COMPENSATING", x("COMPENSATE"));
+    b.either(x("COMPENSATE"), |b| b.set("U_F", x("UF_NEW")), |b| b.set("U_F", x("ZERO")));
 }
 
 /// Which mode acts, and what it does with output and terms.
@@ -180,7 +174,7 @@ fn move_setpoint(b: &mut Builder, plan: &Plan) {
     b.either(
         released.and(x("CLOSED").opposite()),
         |b| {
-            super::parts::clamp(b, "SPW", "Y", "SP_LO", "SP_HI");
+            super::parts::clamp(b, "SPW", "Y", "SP_LIM_LO", "SP_LIM_HI");
             b.set("SPW_C", x("ZERO"));
         },
         |b| ramp(b, ("SPW", "SPW_C"), "R_TO"),

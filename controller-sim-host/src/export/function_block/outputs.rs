@@ -1,12 +1,13 @@
 //! Alarms, status and outputs at the end of a sample.
 
-use super::super::block::{Builder, x};
+use super::super::block::{Builder, Expression, x};
 use super::modes::automatic;
-use super::parts::status;
+use super::parts::{finite, status};
 use super::plan::Plan;
 
-/// An alarm: its flag, its status bit, the constants of its level and of where it clears.
+/// An alarm: the output that shows it, its flag, its status bit, the constants of its level and of where it clears.
 pub(super) struct Alarm {
+    pub(super) output: &'static str,
     pub(super) active: &'static str,
     pub(super) bit: &'static str,
     pub(super) level: &'static str,
@@ -19,43 +20,48 @@ pub(super) struct Alarm {
 /// In the order of the levels.
 pub(super) const ALARMS: [Alarm; 5] = [
     Alarm {
-        active: "ALM_HI_HI",
-        bit: "ST_ALARM_HI_HI",
-        level: "HI_HI",
-        clears: "HI_HI_CLEAR",
-        what: "PV very high",
+        output: "HH_ALM",
+        active: "HH_ACTIVE",
+        bit: "ST_ALARM_HH",
+        level: "HH_LIM",
+        clears: "HH_CLEAR",
+        what: "measurement very high",
         low: false,
     },
     Alarm {
-        active: "ALM_HI",
-        bit: "ST_ALARM_HI",
-        level: "HI",
-        clears: "HI_CLEAR",
-        what: "PV high",
+        output: "H_ALM",
+        active: "H_ACTIVE",
+        bit: "ST_ALARM_H",
+        level: "H_LIM",
+        clears: "H_CLEAR",
+        what: "measurement high",
         low: false,
     },
     Alarm {
-        active: "ALM_LO",
-        bit: "ST_ALARM_LO",
-        level: "LO",
-        clears: "LO_CLEAR",
-        what: "PV low",
+        output: "L_ALM",
+        active: "L_ACTIVE",
+        bit: "ST_ALARM_L",
+        level: "L_LIM",
+        clears: "L_CLEAR",
+        what: "measurement low",
         low: true,
     },
     Alarm {
-        active: "ALM_LO_LO",
-        bit: "ST_ALARM_LO_LO",
-        level: "LO_LO",
-        clears: "LO_LO_CLEAR",
-        what: "PV very low",
+        output: "LL_ALM",
+        active: "LL_ACTIVE",
+        bit: "ST_ALARM_LL",
+        level: "LL_LIM",
+        clears: "LL_CLEAR",
+        what: "measurement very low",
         low: true,
     },
     Alarm {
-        active: "ALM_DEV",
+        output: "DEV_ALM",
+        active: "DEV_ACTIVE",
         bit: "ST_ALARM_DEV",
-        level: "DEV",
+        level: "DEV_LIM",
         clears: "DEV_CLEAR",
-        what: "deviation of PV from the working set-point",
+        what: "deviation",
         low: false,
     },
 ];
@@ -82,7 +88,7 @@ pub(super) fn alarms(b: &mut Builder, plan: &Plan) {
 /// The bits that every sample of a loop at work ends with.
 pub(super) fn last_bits(b: &mut Builder, plan: &Plan) {
     if plan.compensator.is_some() {
-        b.when(x("COMP_ON").and(automatic("MODE_NOW")), |b| status(b, "ST_COMPENSATING"));
+        b.when(x("COMPENSATE").and(automatic("MODE_NOW")), |b| status(b, "ST_COMPENSATING"));
     }
     b.when(x("SPW").is(x("R_ASKED")).opposite(), |b| status(b, "ST_SP_RAMPING"));
     for (alarm, _) in plan.alarms() {
@@ -95,21 +101,33 @@ pub(super) fn write(b: &mut Builder, plan: &Plan) {
     b.note("outputs");
     b.set("OP", x("U"));
     b.set("OP_UNLIM", x("V"));
+    b.when(finite("PV"), |b| b.set("PV_ENG", x("PV")));
+    b.set("SP_WORKING", x("SPW"));
+    b.set("DEV", x("SPW") - x("PV_ENG"));
     b.set("I_TERM", x("I_SUM"));
     b.set("PD_TERM", x("PD"));
-    if plan.compensator.is_some() {
-        b.set("COMP_OUT", x("UF_NEW"));
-        b.set("D_HAT", x("DH"));
-    }
-    b.set("SP_WORK", x("SPW"));
+    let (u_f, d_hat) = if plan.compensator.is_some() { ("UF_NEW", "DH") } else { ("ZERO", "ZERO") };
+    b.set("UF", x(u_f));
+    b.set("D_HAT", x(d_hat));
     b.set("BKCAL_OUT", x("SPW"));
-    b.set("MODE_ACT", x("MODE_LAST"));
+    b.set("MODE", x("MODE_LAST"));
+    b.set("IN_AUTO", automatic("MODE_LAST"));
+    b.set("IN_CAS", x("MODE_LAST").is(x("MODE_CAS")));
     b.note("for a primary loop: whether another set-point can act");
-    let (at_top, at_bottom) = if plan.numbers.reversed {
-        (x("U_LIMITED").at_most(x("OP_LO")), x("U_LIMITED").at_least(x("OP_HI")))
-    } else {
-        (x("U_LIMITED").at_least(x("OP_HI")), x("U_LIMITED").at_most(x("OP_LO")))
+    let blocked = |b: &mut Builder, reversed: bool| {
+        let (full, empty) = (x("U_LIMITED").at_least(x("OP_LIM_HI")), x("U_LIMITED").at_most(x("OP_LIM_LO")));
+        let (up, down) = if reversed { (empty, full) } else { (full, empty) };
+        b.set("BLOCKED_UP", up.or(x("SPW").at_least(x("SP_LIM_HI"))));
+        b.set("BLOCKED_DN", down.or(x("SPW").at_most(x("SP_LIM_LO"))));
     };
-    b.set("BLOCKED_UP", at_top.or(x("SPW").at_least(x("SP_HI"))));
-    b.set("BLOCKED_DOWN", at_bottom.or(x("SPW").at_most(x("SP_LO"))));
+    if plan.turns() {
+        b.either(x("REVERSED"), |b| blocked(b, true), |b| blocked(b, false));
+    } else {
+        blocked(b, plan.numbers.reversed);
+    }
+    let configured = plan.alarms();
+    for alarm in &ALARMS {
+        let is = configured.iter().any(|(other, _)| other.active == alarm.active);
+        b.set(alarm.output, if is { x(alarm.active) } else { Expression::Flag(false) });
+    }
 }

@@ -85,8 +85,8 @@ pub(super) fn limit(
 ) {
     approach(b, (sum, carry), wanted, steps, rate);
     b.set(limited, x(sum));
-    b.when(x(sum).above(x("OP_LO")).and(x(sum).below(x("OP_HI"))).opposite(), |b| {
-        clamp(b, limited, sum, "OP_LO", "OP_HI");
+    b.when(x(sum).above(x("OP_LIM_LO")).and(x(sum).below(x("OP_LIM_HI"))).opposite(), |b| {
+        clamp(b, limited, sum, "OP_LIM_LO", "OP_LIM_HI");
         b.when(x(limited).is(x(sum)).opposite(), |b| restart(b, sum, carry, x(limited)));
     });
 }

@@ -4,8 +4,8 @@ use super::super::Export;
 use super::outputs::{ALARMS, Alarm};
 use crate::simulate::{AnyLaw, Precision};
 use controller_core::{
-    Action, AntiWindupConfig, Compensate, ControllerConfig, ControllerNumbers, IntegralRule, PidCoefficients,
-    Real,
+    AntiWindup, AntiWindupConfig, Compensate, ControllerConfig, ControllerNumbers, IntegralRule,
+    PidCoefficients, PidConfig, Real,
 };
 
 /// Everything that is written into the block.
@@ -17,6 +17,8 @@ pub(super) struct Plan {
     pub(super) numbers: ControllerNumbers<f64>,
     pub(super) pid: PidCoefficients<f64>,
     pub(super) compensator: Option<Chains>,
+    /// Gain of the anti-windup as it is with integral action.
+    pub(super) anti_windup_share: f64,
     pub(super) tuning: Option<Tuning>,
     /// Largest and smallest normal number of the number type.
     pub(super) largest: f64,
@@ -45,9 +47,10 @@ pub(super) struct Chains {
 /// What can be tuned on site, and the values that the block starts with.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tuning {
+    /// Size of the gain.
     pub(super) kp: f64,
-    /// `None`: there is no integral term.
-    pub(super) tn: Option<f64>,
+    /// 0: there is no integral action.
+    pub(super) tn: f64,
     pub(super) tv: f64,
     pub(super) tf: f64,
 }
@@ -87,8 +90,11 @@ impl Plan {
             }
         });
         let config = spec.config.rounded::<T>();
+        let integral = PidConfig { kp: 1.0, ki: 1.0, ..config.pid };
+        let anti_windup = AntiWindup::<T>::new(&config.anti_windup, &integral, scenario.ts).ok()?;
         Some(Self {
             precision: export.precision,
+            anti_windup_share: anti_windup.gain().to_f64(),
             tuning: Tuning::of::<T>(&config),
             config,
             numbers: widened(&law.numbers()),
@@ -103,9 +109,10 @@ impl Plan {
         self.config.pid.integral_rule == IntegralRule::Trapezoid
     }
 
-    /// Direct action: the output rises with the measurement.
-    pub(super) fn direct(&self) -> bool {
-        self.config.pid.action == Action::Direct
+    /// Whether the gains are below 0 unless tuning makes them 0: whether the output falls with the set-point is then a
+    /// question.
+    pub(super) fn turns(&self) -> bool {
+        self.tuning.is_some() && self.config.pid.signed_gains()[0] < 0.0
     }
 
     /// Whether a fallback moves the output more slowly than its own rates.
@@ -132,10 +139,20 @@ impl Plan {
     /// Names of the coefficients that tuning changes.
     pub(super) fn tuned(&self) -> Vec<&'static str> {
         let mut names = vec!["KI_NOW", "KI_BEFORE", "G", "P_R", "H_R", "P_Y", "H_Y"];
-        if self.tracking() == Some(None) && self.config.pid.ki != 0.0 {
-            names.push("AW_GAIN");
+        match self.config.anti_windup {
+            AntiWindupConfig::BackCalculation { .. } => names.push("AW_GAIN"),
+            AntiWindupConfig::Conditional => names.push("AW_TAKES_BACK"),
+            AntiWindupConfig::None => {}
+        }
+        if self.turns() {
+            names.push("REVERSED");
         }
         names
+    }
+
+    /// Whether the anti-windup takes increments back, if there is integral action.
+    pub(super) fn conditional(&self) -> bool {
+        self.config.anti_windup == AntiWindupConfig::Conditional
     }
 
     /// The tracking time constant as configured: `None` when another rule holds, `Some(None)` for the default.
@@ -157,9 +174,14 @@ impl Tuning {
             (T::SMALLEST_NORMAL..=T::LARGEST).contains(&x).then_some(x)
         };
         usable(pid.kp.abs())?;
-        let tn = if pid.ki == 0.0 { None } else { Some(usable(pid.kp / pid.ki)?) };
+        let tn = if pid.ki == 0.0 { 0.0 } else { usable(pid.kp / pid.ki)? };
         let tv = if pid.kd == 0.0 { 0.0 } else { usable(pid.kd / pid.kp)? };
-        Some(Self { kp: pid.kp, tn, tv, tf: pid.tf })
+        Some(Self { kp: pid.kp.abs(), tn, tv, tf: pid.tf })
+    }
+
+    /// Names of the inputs, and what they begin with.
+    pub(super) fn inputs(self) -> [(&'static str, f64); 4] {
+        [("KP", self.kp), ("TN", self.tn), ("TV", self.tv), ("TF", self.tf)]
     }
 }
 

@@ -28,16 +28,16 @@ pub(super) fn without_measurement(b: &mut Builder, plan: &Plan) {
 pub(super) fn settle(b: &mut Builder, plan: &Plan) {
     let n = &plan.numbers;
     b.note("first good measurement: everything at rest at it and at the applied output");
-    clamp(b, "Y", "PV", "PV_LO", "PV_HI");
-    b.when(x("SP_FINITE").opposite(), |b| clamp(b, "R_ASKED", "PV", "SP_LO", "SP_HI"));
+    clamp(b, "Y", "PV", "PV_MIN", "PV_MAX");
+    b.when(x("SP_FINITE").opposite(), |b| clamp(b, "R_ASKED", "PV", "SP_LIM_LO", "SP_LIM_HI"));
     if n.setpoint_ramps || n.setpoint_tracks {
         b.note("the working set-point starts at the measurement");
-        clamp(b, "SPW", "PV", "SP_LO", "SP_HI");
+        clamp(b, "SPW", "PV", "SP_LIM_LO", "SP_LIM_HI");
         b.set("SPW_C", x("ZERO"));
     } else {
         restart(b, "SPW", "SPW_C", x("R_ASKED"));
     }
-    b.when(x("FF_FINITE").opposite(), |b| clamp(b, "OFFSET", "ZERO", "FF_LO", "FF_HI"));
+    b.when(x("FF_FINITE").opposite(), |b| clamp(b, "OFFSET", "ZERO", "FF_MIN", "FF_MAX"));
     if let Some(chains) = &plan.compensator {
         compensator::settle(b, chains, "Y", "APPLIED");
     }
@@ -52,7 +52,7 @@ pub(super) fn settle(b: &mut Builder, plan: &Plan) {
     }
     b.set("MODE_LAST", x("MODE_HOLD"));
     if plan.compensator.is_some() {
-        b.set("COMPENSATING", x("COMP_ON"));
+        b.set("COMPENSATING", x("COMPENSATE"));
     }
     b.set("STARTED", Expression::Flag(true));
     b.set("OWN", x("APPLIED"));
@@ -82,7 +82,7 @@ fn nothing_estimated(b: &mut Builder, plan: &Plan) {
 /// The set-point as the mode in `mode` asks for it, within its range, into `to`; the last usable one if not finite.
 pub(super) fn asked_by(b: &mut Builder, to: &str, mode: &str) {
     b.set("ACC_T", x("SP"));
-    b.when(x(mode).is(x("MODE_CAS")), |b| b.set("ACC_T", x("SP_CAS")));
+    b.when(x(mode).is(x("MODE_CAS")), |b| b.set("ACC_T", x("SP_REMOTE")));
     b.when(finite("ACC_T").opposite(), |b| b.set("ACC_T", x("R_ASKED")));
-    clamp(b, to, "ACC_T", "SP_LO", "SP_HI");
+    clamp(b, to, "ACC_T", "SP_LIM_LO", "SP_LIM_HI");
 }

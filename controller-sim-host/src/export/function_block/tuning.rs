@@ -1,27 +1,32 @@
 //! Tuning on site: other values of KP, TN, TV, TF become coefficients, taken over without a bump.
 
-use super::super::block::{Builder, Expression, Role, Type, x};
+use super::super::block::{Builder, Expression, Initial, Role, Type, x};
 use super::parts::{add, deadband, finite, long, status};
 use super::plan::{Plan, Tuning};
-use super::{compensator, law};
+use super::{anew, compensator, law};
 
 /// At the start of a sample: judges the inputs, rebuilds the coefficients when they have changed.
 pub(super) fn retune(b: &mut Builder, plan: &Plan) {
-    let Some(tuning) = &plan.tuning else { return };
-    b.note("tuning on site: values that cannot be used are refused, the old ones stay");
-    let inputs = tuning.inputs();
-    b.set("PAR_OK", finite("KP"));
+    let Some(tuning) = plan.tuning else { return };
+    let inputs = tuning.inputs().map(|(name, _)| name);
+    b.note("tuning on site: inputs that have stayed as a design before began count as those of this design");
+    for name in inputs {
+        anew::asked(b, name);
+    }
+    b.when(x("KP_ASKED").below(x("ZERO")), |b| b.set("KP_ASKED", -x("KP_ASKED")));
+    b.note("values that cannot be used are refused, the old ones stay");
+    b.set("PAR_OK", finite("KP_ASKED"));
     for name in &inputs[1..] {
-        refuse(b, finite(name).opposite());
+        refuse(b, finite(&format!("{name}_ASKED")).opposite());
     }
     b.when(x("PAR_OK"), |b| {
         b.set("PAR_CHANGED", Expression::Flag(false));
-        for name in &inputs {
-            let same = x(name).is(x(&format!("{name}_TAKEN")));
+        for name in inputs {
+            let same = x(&format!("{name}_ASKED")).is(x(&format!("{name}_TAKEN")));
             b.when(same.opposite(), |b| b.set("PAR_CHANGED", Expression::Flag(true)));
         }
         b.when(x("PAR_CHANGED"), |b| {
-            coefficients(b, plan, tuning);
+            coefficients(b, plan);
             b.when(x("PAR_OK"), |b| take(b, plan, tuning));
         });
     });
@@ -32,13 +37,6 @@ pub(super) fn retune(b: &mut Builder, plan: &Plan) {
 pub(super) fn refused(b: &mut Builder, plan: &Plan) {
     if plan.tuning.is_some() {
         b.when(x("PAR_REFUSED"), |b| status(b, "ST_PAR_REFUSED"));
-    }
-}
-
-impl Tuning {
-    /// Names of the inputs.
-    pub(super) fn inputs(&self) -> Vec<&'static str> {
-        if self.tn.is_some() { vec!["KP", "TN", "TV", "TF"] } else { vec!["KP", "TV", "TF"] }
     }
 }
 
@@ -53,49 +51,43 @@ fn refuse(b: &mut Builder, when: Expression) {
 }
 
 /// The new coefficients in double precision, each rounded once; `PAR_OK` says whether they may be used.
-fn coefficients(b: &mut Builder, plan: &Plan, tuning: &Tuning) {
-    let integral = tuning.tn.is_some();
+fn coefficients(b: &mut Builder, plan: &Plan) {
     let zero = || x("L_ZERO");
-    b.note("KP keeps its sign, TN > 0, TV >= 0, TF = 0 or at least TS/2");
-    b.set("L_KP", long("KP"));
-    b.set("L_TV", long("TV"));
-    b.set("L_TF", long("TF"));
-    b.set("L_SIZE", x("L_KP_SIGN") * x("L_KP"));
-    refuse(b, x("L_SIZE").below(x("L_SMALLEST")).or(x("L_SIZE").above(x("L_GAIN_MAX"))));
+    b.note("TN >= 0, TV >= 0 and with TF only, TF = 0 or at least TS/2");
+    b.set("L_KP", long("KP_ASKED"));
+    b.set("L_TN", long("TN_ASKED"));
+    b.set("L_TV", long("TV_ASKED"));
+    b.set("L_TF", long("TF_ASKED"));
+    refuse(b, x("L_KP").above(x("L_GAIN_MAX")));
+    refuse(b, x("L_TN").below(zero()));
     refuse(b, x("L_TV").below(zero()));
     refuse(b, x("L_TF").is(zero()).opposite().and(x("L_TF").below(x("L_TF_MIN"))));
     refuse(b, x("L_TF").above(x("L_TF_MAX")));
-    refuse(b, x("L_TV").above(zero()).and(x("L_TF").is(zero())));
-    if integral {
-        b.set("L_TN", long("TN"));
-        refuse(b, x("L_TN").at_most(zero()));
-    }
+    b.set("L_KD", x("L_KP") * x("L_TV"));
     b.when(x("PAR_OK"), |b| {
-        b.note("parallel gains, rounded like every parameter: ki = KP/TN, kd = KP*TV");
-        b.set("L_KD", x("L_KP") * x("L_TV"));
-        if integral {
-            b.set("L_KI", x("L_KP") / x("L_TN"));
-            size(b, "L_SIZE", x("L_KI"));
-            refuse(b, x("L_SIZE").below(x("L_SMALLEST")).or(x("L_SIZE").above(x("L_GAIN_MAX"))));
-        } else {
-            b.set("L_KI", zero());
-        }
-        size(b, "L_SIZE", x("L_KD"));
-        refuse(b, x("L_SIZE").above(x("L_GAIN_MAX")));
+        b.note("parallel gains, rounded like every parameter: ki = KP/TN, kd = KP*TV; TN = 0: no integral action");
+        b.set("L_KI", zero());
+        b.when(x("L_TN").above(zero()), |b| b.set("L_KI", x("L_KP") / x("L_TN")));
+        refuse(b, x("L_KI").above(x("L_GAIN_MAX")));
+        refuse(b, x("L_KD").above(x("L_GAIN_MAX")));
     });
     b.when(x("PAR_OK"), |b| {
-        let rounded = |b: &mut Builder, name: &str| {
+        for name in ["L_KI", "L_KD"] {
             b.set("ROUNDED", x(name).to(Type::Real));
             b.set(name, long("ROUNDED"));
-        };
-        rounded(b, "L_KI");
-        rounded(b, "L_KD");
+        }
+        refuse(b, x("L_KD").above(zero()).and(x("L_TF").is(zero())));
         anti_windup(b, plan);
-        if plan.direct() {
-            b.note("direct action: the gains with the opposite sign");
+        let [kp, ..] = plan.config.pid.signed_gains();
+        if kp < 0.0 {
+            b.note("the direction of the design: gains below 0");
             for gain in ["L_KP", "L_KI", "L_KD"] {
                 b.set(gain, -x(gain));
             }
+        }
+        if plan.turns() {
+            let still = x("L_KI").is(zero()).and(x("L_KP").below(zero()));
+            b.set("N_REVERSED", x("L_KI").below(zero()).or(still));
         }
         filter_gains(b);
         store(b, x("L_KI") * x("L_TS") * x("L_SHARE_NOW"), "N_KI_NOW");
@@ -104,17 +96,35 @@ fn coefficients(b: &mut Builder, plan: &Plan, tuning: &Tuning) {
     });
 }
 
-/// `min(1, TS/TT)` with the default `TT = max(kp/ki, TF, TS)`.
+/// The rule of the anti-windup, which acts only with integral action; `min(1, TS/TT)`, by default with `TT = max(kp/ki, TF, TS)`.
 fn anti_windup(b: &mut Builder, plan: &Plan) {
-    if let (Some(None), true) = (plan.tracking(), plan.config.pid.ki != 0.0) {
-        b.note("TT = max(kp/ki, TF, TS); share of the anti-windup min(1, TS/TT)");
-        b.set("L_TT", x("L_TS"));
-        b.when(x("L_TF").above(x("L_TT")), |b| b.set("L_TT", x("L_TF")));
-        b.set("L_SIZE", x("L_KP") / x("L_KI"));
-        b.when(x("L_SIZE").above(x("L_TT")), |b| b.set("L_TT", x("L_SIZE")));
-        b.set("L_VALUE", x("L_TS") / x("L_TT"));
-        b.when(x("L_VALUE").below(x("L_ONE")).opposite(), |b| b.set("L_VALUE", x("L_ONE")));
-        round(b, "N_AW_GAIN");
+    let integral = || x("L_KI").is(x("L_ZERO")).opposite();
+    if plan.conditional() {
+        b.set("N_AW_TAKES_BACK", integral());
+        return;
+    }
+    match plan.tracking() {
+        None => {}
+        Some(Some(_)) => {
+            b.note("share of the anti-windup min(1, TS/TT); without integral action 0");
+            b.set("N_AW_GAIN", x("ZERO"));
+            b.when(integral(), |b| b.set("N_AW_GAIN", x("AW_SHARE")));
+        }
+        Some(None) => {
+            b.note(
+                "TT = max(kp/ki, TF, TS); share of the anti-windup min(1, TS/TT); without integral action 0",
+            );
+            b.set("N_AW_GAIN", x("ZERO"));
+            b.when(integral(), |b| {
+                b.set("L_TT", x("L_TS"));
+                b.when(x("L_TF").above(x("L_TT")), |b| b.set("L_TT", x("L_TF")));
+                b.set("L_SIZE", x("L_KP") / x("L_KI"));
+                b.when(x("L_SIZE").above(x("L_TT")), |b| b.set("L_TT", x("L_SIZE")));
+                b.set("L_VALUE", x("L_TS") / x("L_TT"));
+                b.when(x("L_VALUE").below(x("L_ONE")).opposite(), |b| b.set("L_VALUE", x("L_ONE")));
+                round(b, "N_AW_GAIN");
+            });
+        }
     }
 }
 
@@ -171,7 +181,7 @@ fn overflow(b: &mut Builder) {
 }
 
 /// The new coefficients take over: lags, being signals, are kept, the integral term absorbs the difference.
-fn take(b: &mut Builder, plan: &Plan, tuning: &Tuning) {
+fn take(b: &mut Builder, plan: &Plan, tuning: Tuning) {
     b.when(x("STARTED"), |b| {
         b.note("without a bump: what the old anti-windup still owes, and the difference of the filtered terms, go into I");
         b.set("OWED", x("ZERO"));
@@ -182,8 +192,8 @@ fn take(b: &mut Builder, plan: &Plan, tuning: &Tuning) {
     for coefficient in plan.tuned() {
         b.set(coefficient, x(&format!("N_{coefficient}")));
     }
-    for input in tuning.inputs() {
-        b.set(&format!("{input}_TAKEN"), x(input));
+    for (input, _) in tuning.inputs() {
+        b.set(&format!("{input}_TAKEN"), x(&format!("{input}_ASKED")));
     }
     b.when(x("STARTED"), |b| {
         deadband(b, "Y_SEEN", "SPW", "Y");
@@ -223,18 +233,23 @@ pub(super) fn declare(b: &mut Builder, plan: &Plan) {
         ("L_C", pid.c, "set-point weight of the derivative term"),
         ("L_SHARE_NOW", now, "weight of e[k] in the integral rule"),
         ("L_SHARE_BEFORE", before, "weight of e[k-1] in the integral rule"),
-        ("L_KP_SIGN", pid.kp.signum(), "sign that KP must have"),
         ("L_SMALLEST", plan.smallest, "smallest normal number of the loop"),
         ("L_GAIN_MAX", 1e15, "largest gain"),
         ("L_TF_MIN", 0.5 * n.ts, "shortest filter time [s]"),
         ("L_TF_MAX", 1e12, "longest filter time [s]"),
-        ("L_SIGNAL", y + r + c.deadband.abs(), "largest signal [y]"),
-        ("L_FROM_Y", from_y * y, "largest number of the compensator, from PV [u]"),
-        ("L_FROM_U", from_u * u, "largest number of the compensator, from OP [u]"),
-        ("L_OFFSET", larger(c.offset_lo, c.offset_hi), "largest feed-forward [u]"),
-        ("L_VALUE_MAX", 1e-6 * plan.largest, "largest number that a step may form [u]"),
+        ("L_SIGNAL", y + r + c.deadband.abs(), "largest signal [PV unit]"),
+        ("L_FROM_Y", from_y * y, "largest number of the compensator, from PV [OP unit]"),
+        ("L_FROM_U", from_u * u, "largest number of the compensator, from OP [OP unit]"),
+        ("L_OFFSET", larger(c.offset_lo, c.offset_hi), "largest feed-forward [OP unit]"),
+        ("L_VALUE_MAX", 1e-6 * plan.largest, "largest number that a step may form [OP unit]"),
     ];
     for (name, value, comment) in numbers {
-        b.declare(Role::Constant, Type::Long, name, super::super::block::Initial::Number(value), comment);
+        b.declare(Role::Constant, Type::Long, name, Initial::Number(value), comment);
     }
+    for (name, value) in plan.tuning.map_or(Vec::new(), |tuning| tuning.inputs().to_vec()) {
+        let name = format!("{name}_DESIGN");
+        b.declare(Role::Constant, Type::Real, &name, Initial::Number(value), "value of the design");
+    }
+    let comment = "anti-windup: min(1, TS/TT)";
+    b.declare(Role::Constant, Type::Real, "AW_SHARE", Initial::Number(plan.anti_windup_share), comment);
 }
