@@ -206,3 +206,41 @@ fn only_what_concerns_the_loop_is_warned_of() {
         .collect();
     assert_eq!(codes, ["fast-filter", "clamped", "open-range", "open-range"]);
 }
+
+/// The words of a line of a shell, quotes taken off.
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    for (n, part) in line.split('\'').enumerate() {
+        if n % 2 == 1 {
+            words.push(part.to_owned());
+        } else {
+            words.extend(part.split_whitespace().map(str::to_owned));
+        }
+    }
+    words
+}
+
+/// The page for the PLC can be followed as it is written.
+#[test]
+fn the_page_leads_to_a_block() {
+    let page = include_str!("../../../controller-capi/iec/EXPORTED.md");
+    let folder = Folder::new("export-page");
+    let commands: Vec<Vec<String>> = page
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("cargo run --release -p controller-sim-host -- "))
+        .map(words)
+        .collect();
+    let [design, export] = &*commands else { panic!("{commands:?}") };
+    let run = |words: &[String]| folder.done(&words.iter().map(String::as_str).collect::<Vec<_>>());
+    run(design);
+    let line = page.lines().map(str::trim).find(|line| line.starts_with("measurement = ")).expect("a line");
+    let file = folder.read("loop.toml");
+    let limits = file.lines().find(|line| line.starts_with("limits = ")).expect("limits");
+    folder.write("loop.toml", &file.replace(limits, &format!("{limits}\n{line}")));
+    // Nothing is warned of.
+    assert_eq!(run(export), "wrote loop.st\n");
+    let block = folder.read("loop.st");
+    let used = page.lines().find_map(|line| line.trim().strip_prefix("TANK : ")).expect("an instance");
+    assert!(block.starts_with(&format!("FUNCTION_BLOCK {}\n", used.trim_end_matches(';'))), "{used}");
+    assert!(block.contains("Call it once every 0.1 s,") && !block.contains("WARNING"), "{block}");
+}

@@ -296,3 +296,17 @@ fn the_page_has_every_bit() {
         assert!(table.contains(&format!("\n| {bit} | ")), "bit {bit}");
     }
 }
+
+/// The page's program is accepted, and what it wires is there.
+#[test]
+fn the_program_of_the_page_is_accepted() {
+    let page = read("controller-capi/iec/EXPORTED.md");
+    let (_, behind) = page.split_once("```iecst\n").expect("a program");
+    let (program, _) = behind.split_once("```").expect("its end");
+    let unit = iec61131::Parser::new(program).parse().unwrap_or_else(|fault| panic!("{fault}\n{program}"));
+    assert_eq!(unit.declarations.len(), 1);
+    let exported = declarations(&read("tests/exported/dob_first_order.st"));
+    for (name, section) in [("SP", "VAR_INPUT"), ("PV", "VAR_INPUT"), ("OP", "VAR_OUTPUT")] {
+        assert!(program.contains(name) && exported[name].section == section, "{name}");
+    }
+}
