@@ -3,7 +3,9 @@
 use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::limit::RANGE_LIMIT;
 use crate::real::{Real, coefficient};
+use crate::snapshot::Words;
 use crate::status::Status;
+use crate::stored::Flag;
 
 /// Alarm levels \[y\]; `None`: no such alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -60,7 +62,7 @@ pub struct Alarms<T> {
     lo_lo: T,
     deviation: T,
     hysteresis: T,
-    any: bool,
+    any: Flag,
 }
 
 impl<T: Real> Alarms<T> {
@@ -98,7 +100,7 @@ impl<T: Real> Alarms<T> {
             lo_lo: coefficient(config.lo_lo.unwrap_or(-never)),
             deviation: coefficient(config.deviation.unwrap_or(never)),
             hysteresis: coefficient(config.hysteresis),
-            any: levels.iter().any(|(_, level)| level.is_some()) || config.deviation.is_some(),
+            any: Flag::new(levels.iter().any(|(_, level)| level.is_some()) || config.deviation.is_some()),
         })
     }
 
@@ -107,14 +109,14 @@ impl<T: Real> Alarms<T> {
     #[must_use]
     pub fn levels(&self) -> Option<([T; 5], T)> {
         let levels = [self.hi_hi, self.hi, self.lo, self.lo_lo, self.deviation];
-        self.any.then_some((levels, self.hysteresis))
+        self.any.is_set().then_some((levels, self.hysteresis))
     }
 
     /// The active alarms after this sample; `active` is the set after the last one.
     #[must_use]
     #[inline]
     pub fn check(&self, active: Status, r: T, y: T) -> Status {
-        if !self.any {
+        if !self.any.is_set() {
             return Status::NONE;
         }
         let over = |bit: Status, x: T, level: T| {
@@ -126,5 +128,17 @@ impl<T: Real> Alarms<T> {
             | over(Status::ALARM_LO, -y, -self.lo)
             | over(Status::ALARM_LO_LO, -y, -self.lo_lo)
             | over(Status::ALARM_DEVIATION, (r - y).magnitude(), self.deviation)
+    }
+
+    /// Its numbers.
+    #[inline(always)]
+    pub(crate) fn write(&self, words: &mut impl Words) {
+        words.number(self.hi_hi);
+        words.number(self.hi);
+        words.number(self.lo);
+        words.number(self.lo_lo);
+        words.number(self.deviation);
+        words.number(self.hysteresis);
+        words.word(u32::from(self.any.byte()));
     }
 }

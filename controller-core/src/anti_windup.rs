@@ -3,6 +3,8 @@
 use crate::error::{Checker, ConfigErrors, Param};
 use crate::pid::PidConfig;
 use crate::real::{Real, coefficient};
+use crate::snapshot::Words;
+use crate::stored::Flag;
 
 /// The anti-windup rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +48,7 @@ impl Default for AntiWindupConfig {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AntiWindup<T> {
     gain: T,
-    conditional: bool,
+    conditional: Flag,
 }
 
 impl<T: Real> AntiWindup<T> {
@@ -69,7 +71,7 @@ impl<T: Real> AntiWindup<T> {
         let active = pid.ki != 0.0;
         check.finish(Self {
             gain: coefficient(if active { gain } else { 0.0 }),
-            conditional: conditional && active,
+            conditional: Flag::new(conditional && active),
         })
     }
 
@@ -82,7 +84,7 @@ impl<T: Real> AntiWindup<T> {
     /// Whether the rule takes increments back.
     #[must_use]
     pub fn is_conditional(&self) -> bool {
-        self.conditional
+        self.conditional.is_set()
     }
 
     /// What to add to the integral term \[u\]: `increment` is what the last sample added, `v` the output it wanted,
@@ -91,6 +93,13 @@ impl<T: Real> AntiWindup<T> {
     #[inline(always)]
     pub fn correction(&self, increment: T, v: T, applied: T) -> T {
         let further = || (v > applied && increment > T::ZERO) || (v < applied && increment < T::ZERO);
-        if self.conditional && further() { -increment } else { self.gain * (applied - v) }
+        if self.conditional.is_set() && further() { -increment } else { self.gain * (applied - v) }
+    }
+
+    /// Its numbers.
+    #[inline(always)]
+    pub(crate) fn write(&self, words: &mut impl Words) {
+        words.number(self.gain);
+        words.word(u32::from(self.conditional.byte()));
     }
 }

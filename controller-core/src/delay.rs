@@ -44,7 +44,8 @@ impl<M> DelayLine<M> {
         M: Memory<T>,
     {
         let cells = self.memory.as_mut();
-        let next = self.newest + 1;
+        // Wraps and adds so that no place, however it came about, does harm.
+        let next = self.newest.wrapping_add(1);
         self.newest = if next >= cells.len() { 0 } else { next };
         if let Some(cell) = cells.get_mut(self.newest) {
             *cell = x;
@@ -62,7 +63,7 @@ impl<M> DelayLine<M> {
         // Selects, no branches: the same cost on every call.
         let oldest = cells.len().wrapping_sub(1);
         let n = if n < oldest { n } else { oldest };
-        let from = if n <= self.newest { self.newest } else { self.newest + cells.len() };
+        let from = if n <= self.newest { self.newest } else { self.newest.wrapping_add(cells.len()) };
         let index = from.wrapping_sub(n);
         cells.get(index).copied().unwrap_or_default()
     }

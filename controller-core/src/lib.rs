@@ -15,6 +15,8 @@
 //!
 //! * A step uses `+ - * /`, comparison and `abs` only: equal inputs give equal bits on every machine.
 //! * [`Controller::step`] is total: for every bit pattern of every input, finite output in its range, finite state.
+//! * Memory that something has written over is no danger: every bit pattern of a [`Controller`] and of its state is a value,
+//!   a step on it gives numbers and nothing worse, and a [`Checksum`] finds it.
 //! * Nothing stalls: integrators and slow lags use compensated addition ([`Accumulator`]).
 //! * Bad configurations cannot be built ([`ConfigErrors`]).
 //!
@@ -46,6 +48,7 @@ mod accumulator;
 pub mod adrc;
 mod alarm;
 mod anti_windup;
+mod checksum;
 pub mod compensator;
 pub mod controller;
 mod deadband;
@@ -65,12 +68,14 @@ mod sample;
 mod setpoint;
 pub mod snapshot;
 mod status;
+mod stored;
 mod trace;
 
 pub use accumulator::Accumulator;
 pub use adrc::{Adrc, AdrcCoefficients, AdrcConfig, AdrcInput, AdrcOutput, AdrcState};
 pub use alarm::{AlarmConfig, Alarms};
 pub use anti_windup::{AntiWindup, AntiWindupConfig};
+pub use checksum::Checksum;
 pub use compensator::{
     AnyCompensator, AnyCompensatorState, Coefficients, Compensate, Compensator, CompensatorConfig,
     CompensatorInput, CompensatorOutput, CompensatorState, Estimator, EstimatorConfig, FilterNames,

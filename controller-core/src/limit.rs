@@ -3,6 +3,7 @@
 use crate::accumulator::Accumulator;
 use crate::error::{Checker, ConfigErrors, Param};
 use crate::real::{Real, coefficient};
+use crate::snapshot::Words;
 
 /// Largest size of any signal's range.
 pub(crate) const RANGE_LIMIT: f64 = 1e12;
@@ -155,5 +156,14 @@ impl<T: Real> Limit<T> {
     #[must_use]
     pub fn hi(&self) -> T {
         self.hi
+    }
+
+    /// Its numbers.
+    #[inline(always)]
+    pub(crate) fn write(&self, words: &mut impl Words) {
+        words.number(self.lo);
+        words.number(self.hi);
+        words.number(self.up);
+        words.number(self.down);
     }
 }

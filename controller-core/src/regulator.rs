@@ -1,9 +1,9 @@
 //! The law inside a loop: what a [`Controller`](crate::Controller) asks of a PID or an ADRC.
 
 use crate::adrc::{Adrc, AdrcInput, AdrcState};
-use crate::pid::{Pid, PidInput, PidOutput, PidState};
+use crate::pid::{Pid, PidCoefficients, PidInput, PidOutput, PidState};
 use crate::real::Real;
-use crate::snapshot::{Reader, Writer};
+use crate::snapshot::{Reader, Words};
 use core::fmt::Debug;
 
 mod sealed {
@@ -62,8 +62,10 @@ pub trait Regulator<T: Real>: sealed::Sealed + Copy + Debug + PartialEq {
     /// up to `u` in size.
     fn reach(&self, state: &Self::State, r: f64, y: f64, u: f64) -> f64;
 
+    /// Writes the law's numbers.
+    fn coefficients_to(&self, words: &mut impl Words);
     /// Writes the state's numbers.
-    fn save(state: &Self::State, writer: &mut Writer<'_>);
+    fn save(state: &Self::State, words: &mut impl Words);
     /// Reads the state's numbers; `None` when one is not finite.
     fn restore(reader: &mut Reader<'_>) -> Option<Self::State>;
 }
@@ -135,8 +137,19 @@ impl<T: Real> Regulator<T> for Pid<T> {
         self.reach(state, r, y) + state.integral_size()
     }
 
-    fn save(state: &PidState<T>, writer: &mut Writer<'_>) {
-        writer.numbers(&state.parts());
+    #[inline(always)]
+    fn coefficients_to(&self, words: &mut impl Words) {
+        let PidCoefficients { ki_now, ki_before, g, p_r, h_r, p_y, h_y } = self.coefficients();
+        words.number(ki_now);
+        words.number(ki_before);
+        words.number(g);
+        words.number(p_r);
+        words.number(h_r);
+        words.number(p_y);
+        words.number(h_y);
+    }
+    fn save(state: &PidState<T>, words: &mut impl Words) {
+        words.numbers(&state.parts());
     }
     fn restore(reader: &mut Reader<'_>) -> Option<PidState<T>> {
         reader.numbers().map(PidState::from_parts)
@@ -208,8 +221,11 @@ impl<T: Real> Regulator<T> for Adrc<T> {
         self.reach(state, r, y, u)
     }
 
-    fn save(state: &AdrcState<T>, writer: &mut Writer<'_>) {
-        writer.numbers(&state.parts());
+    fn coefficients_to(&self, words: &mut impl Words) {
+        words.numbers(&self.numbers());
+    }
+    fn save(state: &AdrcState<T>, words: &mut impl Words) {
+        words.numbers(&state.parts());
     }
     fn restore(reader: &mut Reader<'_>) -> Option<AdrcState<T>> {
         reader.numbers().map(AdrcState::from_parts)

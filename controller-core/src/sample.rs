@@ -3,6 +3,8 @@
 use crate::error::{Checker, ConfigErrors, Param};
 use crate::limit::RANGE_LIMIT;
 use crate::real::{Real, coefficient};
+use crate::snapshot::Words;
+use crate::stored::{Flag, Optional};
 
 /// How good the sender says a measurement is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -118,8 +120,8 @@ pub enum Verdict {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SampleGuardState {
     pub(crate) bad: u16,
-    pub(crate) fallback: bool,
-    pub(crate) settle: bool,
+    pub(crate) fallback: Flag,
+    pub(crate) settle: Flag,
 }
 
 /// Judges measurements: finite, in range, not marked bad; counts bad ones; decides on hold, fallback and return.
@@ -142,8 +144,8 @@ pub struct SampleGuard<T> {
     lo: T,
     hi: T,
     hold_samples: u16,
-    acknowledged: bool,
-    target: Option<T>,
+    acknowledged: Flag,
+    target: Optional<T>,
     step: T,
 }
 
@@ -170,8 +172,8 @@ impl<T: Real> SampleGuard<T> {
             lo: T::from_f64(lo),
             hi: T::from_f64(hi),
             hold_samples: config.hold_samples,
-            acknowledged: config.back == FallbackReturn::Acknowledged,
-            target: target.map(coefficient),
+            acknowledged: Flag::new(config.back == FallbackReturn::Acknowledged),
+            target: Optional::new(target.map(coefficient)),
             step: coefficient(step),
         })
     }
@@ -182,7 +184,7 @@ impl<T: Real> SampleGuard<T> {
     pub(crate) fn goes_on(&self, state: &SampleGuardState, y: T, quality: Quality) -> bool {
         let [low, high] = state.bad.to_le_bytes();
         let nothing_remembered =
-            u32::from_le_bytes([low, high, u8::from(state.fallback), u8::from(state.settle)]) == 0;
+            u32::from_le_bytes([low, high, state.fallback.byte(), state.settle.byte()]) == 0;
         y >= self.lo && y <= self.hi && quality == Quality::Good && nothing_remembered
     }
 
@@ -192,16 +194,16 @@ impl<T: Real> SampleGuard<T> {
         let good = y >= self.lo && y <= self.hi && quality != Quality::Bad;
         if !good {
             if state.bad >= self.hold_samples {
-                state.fallback = true;
+                state.fallback = Flag::new(true);
             } else {
                 state.bad += 1;
             }
-            return if state.fallback { Verdict::Fallback } else { Verdict::Hold };
+            return if state.fallback.is_set() { Verdict::Fallback } else { Verdict::Hold };
         }
-        if state.fallback && self.acknowledged && !acknowledge {
+        if state.fallback.is_set() && self.acknowledged.is_set() && !acknowledge {
             return Verdict::Await;
         }
-        let settle = state.fallback || state.settle;
+        let settle = state.fallback.is_set() || state.settle.is_set();
         *state = SampleGuardState::default();
         if settle { Verdict::UseAfterSettling } else { Verdict::Use }
     }
@@ -211,13 +213,15 @@ impl<T: Real> SampleGuard<T> {
         // Lost and bad samples are the same to the loop: time without a measurement.
         let without = u32::from(state.bad).saturating_add(n);
         state.bad = u16::try_from(without).unwrap_or(u16::MAX);
-        state.settle |= without > u32::from(self.hold_samples);
+        if without > u32::from(self.hold_samples) {
+            state.settle = Flag::new(true);
+        }
     }
 
     /// Where the fallback takes the output \[u\] (`None`: it stays) and the longest step on the way \[u\].
     #[must_use]
     pub fn fallback_output(&self) -> (Option<T>, T) {
-        (self.target, self.step)
+        (self.target.get(), self.step)
     }
 
     /// Bad samples in a row that are held.
@@ -229,12 +233,22 @@ impl<T: Real> SampleGuard<T> {
     /// Whether a fallback ends with an acknowledgement only.
     #[must_use]
     pub fn is_acknowledged(&self) -> bool {
-        self.acknowledged
+        self.acknowledged.is_set()
     }
 
     /// The measurement's range \[y\].
     #[must_use]
     pub fn range(&self) -> (T, T) {
         (self.lo, self.hi)
+    }
+
+    /// Its numbers.
+    #[inline(always)]
+    pub(crate) fn write(&self, words: &mut impl Words) {
+        words.number(self.lo);
+        words.number(self.hi);
+        words.number(self.step);
+        self.target.write(words);
+        words.word(u32::from(self.hold_samples) | u32::from(self.acknowledged.byte()) << 16);
     }
 }

@@ -4,6 +4,8 @@ use crate::accumulator::Accumulator;
 use crate::error::{Checker, ConfigErrors, Param};
 use crate::limit::RANGE_LIMIT;
 use crate::real::{Real, coefficient};
+use crate::snapshot::Words;
+use crate::stored::Flag;
 
 /// Range and rate of a set-point. Bounds up to 1e12 in size, rates above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,8 +65,8 @@ pub struct Setpoint<T> {
     hi: T,
     up: T,
     down: T,
-    ramps: bool,
-    track: bool,
+    ramps: Flag,
+    track: Flag,
 }
 
 impl<T: Real> Setpoint<T> {
@@ -85,8 +87,8 @@ impl<T: Real> Setpoint<T> {
             hi: T::from_f64(config.hi),
             up: coefficient(per_sample(config.rate_up)),
             down: coefficient(per_sample(config.rate_down)),
-            ramps: config.rate_up.is_some() || config.rate_down.is_some(),
-            track: config.track,
+            ramps: Flag::new(config.rate_up.is_some() || config.rate_down.is_some()),
+            track: Flag::new(config.track),
         })
     }
 
@@ -94,7 +96,7 @@ impl<T: Real> Setpoint<T> {
     /// set-point follows the measurement.
     #[must_use]
     pub fn start(&self, r: T, y: T) -> T {
-        self.into_range(if self.ramps || self.track { y } else { r })
+        self.into_range(if self.ramps.is_set() || self.track.is_set() { y } else { r })
     }
 
     /// Moves the working set-point towards `r` \[y\].
@@ -130,7 +132,7 @@ impl<T: Real> Setpoint<T> {
     /// Whether the working set-point follows the measurement while the loop is open.
     #[must_use]
     pub fn tracks(&self) -> bool {
-        self.track
+        self.track.is_set()
     }
 
     /// The longest steps of one sample, down and up \[y\], both above 0.
@@ -142,12 +144,22 @@ impl<T: Real> Setpoint<T> {
     /// Whether a rate was given.
     #[must_use]
     pub fn ramps(&self) -> bool {
-        self.ramps
+        self.ramps.is_set()
     }
 
     /// The range \[y\].
     #[must_use]
     pub fn range(&self) -> (T, T) {
         (self.lo, self.hi)
+    }
+
+    /// Its numbers.
+    #[inline(always)]
+    pub(crate) fn write(&self, words: &mut impl Words) {
+        words.number(self.lo);
+        words.number(self.hi);
+        words.number(self.up);
+        words.number(self.down);
+        words.word(u32::from(self.ramps.byte()) | u32::from(self.track.byte()) << 8);
     }
 }

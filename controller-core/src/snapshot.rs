@@ -114,7 +114,52 @@ pub(crate) fn read<T: Real, V>(
     body(&mut reader).ok_or(SnapshotError::Invalid)
 }
 
-/// Writes the words of a state. Blocks of this crate use it; it has no public methods.
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Writer<'_> {}
+    impl Sealed for crate::checksum::Checksum {}
+}
+
+/// What the words of a law or of a state go to: a snapshot, a [`Checksum`](crate::Checksum). Sealed.
+pub trait Words: sealed::Sealed {
+    /// One more word.
+    fn word(&mut self, word: u32);
+
+    /// The bits of a number: a word of an `f32`, two of an `f64`, the low one first.
+    #[inline(always)]
+    fn number<T: Real>(&mut self, x: T) {
+        let [low, high] = x.to_words();
+        self.word(low);
+        if T::WORDS == 2 {
+            self.word(high);
+        }
+    }
+
+    /// The bits of numbers.
+    #[inline(always)]
+    fn numbers<T: Real>(&mut self, list: &[T]) {
+        list.iter().for_each(|&x| self.number(x));
+    }
+
+    /// The shape of what follows: lags of the chains, shared lags, cells of the line.
+    fn shape(&mut self, chain: usize, shared: usize, cells: usize) {
+        self.word(shape_mark(chain, shared, cells));
+    }
+
+    /// The numbers of lags.
+    fn lags<T: Real>(&mut self, lags: &[Lag<T>]) {
+        lags.iter().for_each(|lag| self.numbers(&lag.parts()));
+    }
+
+    /// The place of a line's newest sample, and its cells.
+    fn line<T: Real, M: Memory<T>>(&mut self, line: &DelayLine<M>) {
+        let (memory, newest) = line.parts();
+        self.word(u32::try_from(newest).unwrap_or(u32::MAX));
+        self.numbers(memory.as_ref());
+    }
+}
+
+/// Writes the words of a state. Blocks of this crate use it.
 #[derive(Debug)]
 pub struct Writer<'a> {
     words: &'a mut [u32],
@@ -122,38 +167,13 @@ pub struct Writer<'a> {
     fits: bool,
 }
 
-impl Writer<'_> {
-    pub(crate) fn word(&mut self, word: u32) {
+impl Words for Writer<'_> {
+    fn word(&mut self, word: u32) {
         match self.words.get_mut(self.at) {
             Some(cell) => *cell = word,
             None => self.fits = false,
         }
         self.at += 1;
-    }
-
-    pub(crate) fn number<T: Real>(&mut self, x: T) {
-        for word in x.to_words().iter().take(T::WORDS) {
-            self.word(*word);
-        }
-    }
-
-    pub(crate) fn numbers<T: Real>(&mut self, list: &[T]) {
-        list.iter().for_each(|&x| self.number(x));
-    }
-
-    /// Marks the shape of what follows: lags of the chains, shared lags, cells of the line.
-    pub(crate) fn shape(&mut self, chain: usize, shared: usize, cells: usize) {
-        self.word(shape_mark(chain, shared, cells));
-    }
-
-    pub(crate) fn lags<T: Real>(&mut self, lags: &[Lag<T>]) {
-        lags.iter().for_each(|lag| self.numbers(&lag.parts()));
-    }
-
-    pub(crate) fn line<T: Real, M: Memory<T>>(&mut self, line: &DelayLine<M>) {
-        let (memory, newest) = line.parts();
-        self.word(u32::try_from(newest).unwrap_or(u32::MAX));
-        self.numbers(memory.as_ref());
     }
 }
 

@@ -209,6 +209,12 @@ impl<T: Real> Adrc<T> {
         before - self.feedback(state, r)
     }
 
+    /// Every number of the law.
+    pub(crate) const fn numbers(&self) -> [T; 10] {
+        let Self { g, half_g, l1, l2, l3, kp, kd, most_y, most_u, ts } = *self;
+        [g, half_g, l1, l2, l3, kp, kd, most_y, most_u, ts]
+    }
+
     /// The coefficients, for export and analysis.
     #[must_use]
     pub const fn coefficients(&self) -> AdrcCoefficients<T> {

@@ -4,14 +4,14 @@ use super::MAX_EXCESS;
 use super::config::CompensatorConfig;
 use super::discretise::{Discretised, discretise};
 use super::kernel::{Coefficients, Compensate, CompensatorOutput, Sealed};
-use super::shape::list_of;
 use super::view::{LagsView, StateRef, StateView};
 use crate::delay::{DelayLine, Memory};
 use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::lag::Lag;
 use crate::plant_model::MAX_ORDER;
 use crate::real::{Real, coefficient};
-use crate::snapshot::{Reader, Writer};
+use crate::snapshot::{Reader, Words};
+use crate::stored::List;
 use core::marker::PhantomData;
 use heapless::Vec;
 
@@ -31,12 +31,12 @@ use heapless::Vec;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnyCompensator<T, M> {
-    g: Vec<T, MAX_ORDER>,
-    y_feed: Vec<T, MAX_ORDER>,
-    y_lead: Vec<T, MAX_ORDER>,
-    y_dc: Vec<T, MAX_ORDER>,
-    u_lead: Vec<T, MAX_ORDER>,
-    e_gain: Vec<T, MAX_EXCESS>,
+    g: List<T, MAX_ORDER>,
+    y_feed: List<T, MAX_ORDER>,
+    y_lead: List<T, MAX_ORDER>,
+    y_dc: List<T, MAX_ORDER>,
+    u_lead: List<T, MAX_ORDER>,
+    e_gain: List<T, MAX_EXCESS>,
     inv_gain: T,
     gain: T,
     delay: usize,
@@ -47,9 +47,9 @@ pub struct AnyCompensator<T, M> {
 /// State of an [`AnyCompensator`] over the delay memory `M`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnyCompensatorState<T, M> {
-    y: Vec<Lag<T>, MAX_ORDER>,
-    u: Vec<Lag<T>, MAX_ORDER>,
-    e: Vec<Lag<T>, MAX_EXCESS>,
+    y: List<Lag<T>, MAX_ORDER>,
+    u: List<Lag<T>, MAX_ORDER>,
+    e: List<Lag<T>, MAX_EXCESS>,
     reference: T,
     line: DelayLine<M>,
 }
@@ -74,14 +74,14 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
         config.validate(ts, capacity)?;
         let Discretised { g, y_feed, y_lead, y_dc, u_lead, e_gain, inv_gain, gain, delay } =
             discretise::<T>(config, ts);
-        let rounded = |list: Vec<f64, MAX_ORDER>| list_of(list.iter().map(|&x| coefficient(x)));
+        let rounded = |list: Vec<f64, MAX_ORDER>| List::of(list.iter().map(|&x| coefficient(x)));
         let law = Self {
             g: rounded(g),
             y_feed: rounded(y_feed),
             y_lead: rounded(y_lead),
             y_dc: rounded(y_dc),
             u_lead: rounded(u_lead),
-            e_gain: list_of(e_gain.iter().map(|&x| coefficient(x))),
+            e_gain: List::of(e_gain.iter().map(|&x| coefficient(x))),
             inv_gain: coefficient(inv_gain),
             gain: coefficient(gain),
             delay,
@@ -105,9 +105,9 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
         }
         let zero = Lag::settled(T::ZERO);
         check.finish(AnyCompensatorState {
-            y: list_of(core::iter::repeat_n(zero, self.g.len())),
-            u: list_of(core::iter::repeat_n(zero, self.g.len())),
-            e: list_of(core::iter::repeat_n(zero, self.e_gain.len())),
+            y: List::of(core::iter::repeat_n(zero, self.g.len())),
+            u: List::of(core::iter::repeat_n(zero, self.g.len())),
+            e: List::of(core::iter::repeat_n(zero, self.e_gain.len())),
             reference: T::ZERO,
             line: DelayLine::new(memory),
         })
@@ -131,9 +131,9 @@ impl<T: Real, M: Memory<T>> AnyCompensator<T, M> {
     fn reshape(&self, state: &mut AnyCompensatorState<T, M>) {
         let zero = Lag::settled(T::ZERO);
         if state.y.len() != self.g.len() || state.e.len() != self.e_gain.len() {
-            state.y = list_of(core::iter::repeat_n(zero, self.g.len()));
-            state.u = state.y.clone();
-            state.e = list_of(core::iter::repeat_n(zero, self.e_gain.len()));
+            state.y = List::of(core::iter::repeat_n(zero, self.g.len()));
+            state.u = state.y;
+            state.e = List::of(core::iter::repeat_n(zero, self.e_gain.len()));
         }
     }
 
@@ -261,7 +261,7 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
     /// the delay line holds, and `u_f` returns to zero.
     fn adopt(&self, old: &Self, state: &mut Self::State, y: T, u: T) -> T {
         let estimate = |law: &Self, state: &Self::State| {
-            let mut copy = (state.y.clone(), state.u.clone(), state.e.clone());
+            let mut copy = (state.y, state.u, state.e);
             let mut lags = LagsView { y: &mut copy.0, u: &mut copy.1, e: &mut copy.2 };
             law.coefficients().advance(&mut lags, y, state.as_ref().next_tap(law.delay, u))
         };
@@ -297,8 +297,13 @@ impl<T: Real, M: Memory<T> + Clone> Compensate<T> for AnyCompensator<T, M> {
         state.as_ref().words()
     }
 
-    fn save(state: &Self::State, writer: &mut Writer<'_>) {
-        state.as_ref().save(writer);
+    #[inline(always)]
+    fn coefficients_to(&self, words: &mut impl Words) {
+        self.coefficients().write(words);
+    }
+
+    fn save(state: &Self::State, words: &mut impl Words) {
+        state.as_ref().save(words);
     }
 
     fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<f64> {

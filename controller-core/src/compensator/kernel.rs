@@ -4,7 +4,7 @@ use super::view::LagsView;
 use crate::error::{Checker, ConfigErrors, Param, Reason};
 use crate::lag::Lag;
 use crate::real::Real;
-use crate::snapshot::{Reader, Writer};
+use crate::snapshot::{Reader, Words};
 
 /// What a compensator gives in one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -139,6 +139,27 @@ impl<T: Real> Coefficients<'_, T> {
         (from_y, 1.0 + 2.0 * sum(self.u_lead))
     }
 
+    /// All of them, in order.
+    #[inline(always)]
+    pub(super) fn write(&self, words: &mut impl Words) {
+        let length = |list: &[T]| u32::try_from(list.len()).unwrap_or(0);
+        let of_y = length(self.g) | length(self.y_feed) << 4 | length(self.y_lead) << 8;
+        let others = length(self.y_dc) << 12 | length(self.u_lead) << 16 | length(self.e_gain) << 20;
+        words.word(of_y | others);
+        let of_y = self.g.iter().zip(self.y_feed).zip(self.y_lead.iter().zip(self.y_dc));
+        for (((g, feed), (lead, dc)), u_lead) in of_y.zip(self.u_lead) {
+            words.number(*g);
+            words.number(*feed);
+            words.number(*lead);
+            words.number(*dc);
+            words.number(*u_lead);
+        }
+        words.numbers(self.e_gain);
+        words.number(self.inv_gain);
+        words.number(self.gain);
+        words.word(u32::try_from(self.delay).unwrap_or(u32::MAX));
+    }
+
     /// Refuses coefficients that do not fit the number type.
     #[inline(never)]
     pub(super) fn check(&self) -> Result<(), ConfigErrors> {
@@ -208,8 +229,11 @@ pub trait Compensate<T: Real>: Sealed {
     /// Number of words a snapshot of the state needs.
     fn words(state: &Self::State) -> usize;
 
+    /// Writes the law's numbers.
+    fn coefficients_to(&self, words: &mut impl Words);
+
     /// Writes the state.
-    fn save(state: &Self::State, writer: &mut Writer<'_>);
+    fn save(state: &Self::State, words: &mut impl Words);
 
     /// Reads back everything but the cells of the line, which it only looks at: the memory may be borrowed, and what is
     /// refused must not have been written. Gives the size of the largest cell; `None` when a number is not finite or a

@@ -10,7 +10,7 @@ use crate::error::ConfigErrors;
 use crate::lag::Lag;
 use crate::plant_model::MAX_ORDER;
 use crate::real::{Real, coefficient};
-use crate::snapshot::{Reader, Writer};
+use crate::snapshot::{Reader, Words};
 
 /// A disturbance estimator for a model of second order ([`EstimatorConfig`] with `a2 > 0`), delay line of `R`
 /// samples. A first-order model needs [`Compensator<T, 1, 2, R>`](Compensator).
@@ -255,8 +255,13 @@ impl<T: Real, const N: usize, const E: usize, const R: usize> Compensate<T> for 
         state.as_ref().words()
     }
 
-    fn save(state: &Self::State, writer: &mut Writer<'_>) {
-        state.as_ref().save(writer);
+    #[inline(always)]
+    fn coefficients_to(&self, words: &mut impl Words) {
+        self.coefficients().write(words);
+    }
+
+    fn save(state: &Self::State, words: &mut impl Words) {
+        state.as_ref().save(words);
     }
 
     fn restore(state: &mut Self::State, reader: &mut Reader<'_>) -> Option<f64> {

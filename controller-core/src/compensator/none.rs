@@ -2,7 +2,7 @@
 
 use super::kernel::{Compensate, CompensatorOutput, Sealed};
 use crate::real::Real;
-use crate::snapshot::{Reader, Writer};
+use crate::snapshot::{Reader, Words};
 
 /// The compensator of a loop that has none: `u_f = 0`, no state, no cost.
 ///
@@ -44,7 +44,8 @@ impl<T: Real> Compensate<T> for NoCompensator {
     fn words(_: &()) -> usize {
         0
     }
-    fn save(_: &(), _: &mut Writer<'_>) {}
+    fn coefficients_to(&self, _: &mut impl Words) {}
+    fn save(_: &(), _: &mut impl Words) {}
     fn restore(_: &mut (), _: &mut Reader<'_>) -> Option<f64> {
         Some(0.0)
     }

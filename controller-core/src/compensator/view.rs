@@ -4,7 +4,7 @@ use super::kernel::{Coefficients, CompensatorOutput};
 use crate::delay::{DelayLine, Memory};
 use crate::lag::Lag;
 use crate::real::Real;
-use crate::snapshot::{Reader, Writer};
+use crate::snapshot::{Reader, Words};
 
 /// Samples for which the chain of applied outputs is followed after the line has filled, when samples were lost.
 const SETTLING: usize = 1000;
@@ -81,13 +81,13 @@ pub(super) struct StateRef<'a, T, M> {
 
 impl<T: Real, M: Memory<T>> StateRef<'_, T, M> {
     /// See [`super::Compensate::save`].
-    pub(super) fn save(&self, writer: &mut Writer<'_>) {
-        writer.shape(self.y.len(), self.e.len(), self.line.capacity());
-        writer.lags(self.y);
-        writer.lags(self.u);
-        writer.lags(self.e);
-        writer.number(self.reference);
-        writer.line(self.line);
+    pub(super) fn save(&self, words: &mut impl Words) {
+        words.shape(self.y.len(), self.e.len(), self.line.capacity());
+        words.lags(self.y);
+        words.lags(self.u);
+        words.lags(self.e);
+        words.number(self.reference);
+        words.line(self.line);
     }
 
     /// See [`super::Compensate::words`].

@@ -8,8 +8,9 @@ use crate::mode::Mode;
 use crate::real::Real;
 use crate::regulator::Regulator;
 use crate::sample::SampleGuardState;
-use crate::snapshot::{self, SnapshotError};
+use crate::snapshot::{self, SnapshotError, Words};
 use crate::status::Status;
+use crate::stored::{Flag, StoredMode};
 
 impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// A zeroed state: it settles itself on its first good sample, at the read-back or at `initial_output`.
@@ -33,13 +34,14 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         self.law.settle(&mut state.law, seen, u0);
         state.pd = u0 - L::integral(&state.law);
         state.guard = SampleGuardState::default();
-        state.mode = Mode::Auto;
+        state.mode = StoredMode::new(Mode::Auto);
         state.u.set(u0);
         state.r.set(r0);
         (state.v, state.u_f, state.y, state.r_asked) = (u0, T::ZERO, y0, r0);
         state.offset = T::ZERO;
         state.alarms = Status::NONE;
-        (state.compensating, state.overrun, state.awake, state.started) = (true, false, true, true);
+        let [no, yes] = [false, true].map(Flag::new);
+        (state.compensating, state.overrun, state.awake, state.started) = (yes, no, yes, yes);
     }
 
     /// Takes `state` over from the loop `old` without a bump: any parameter, limit, dead time or the sampling period
@@ -93,7 +95,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         state: &mut ControllerState<T, C::State, L::State>,
         hand_over: impl FnOnce(&C, &mut C::State, T, T) -> Option<T>,
     ) {
-        if !state.started {
+        if !state.started.is_set() {
             // Nothing has happened yet; only the shape may have to change.
             self.compensator.settle(&mut state.compensator, T::ZERO, T::ZERO);
             return;
@@ -101,7 +103,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         state.r_asked = self.setpoint.into_range(state.r_asked);
         // What the old anti-windup rule still owes for the last sample.
         let u = state.u.value();
-        let owed = if state.mode.is_automatic() {
+        let owed = if state.mode.get().is_automatic() {
             anti_windup.correction(L::last_increment(&state.law), state.v, u)
         } else {
             T::ZERO
@@ -119,7 +121,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
                 -state.u_f
             }
         };
-        let jump = if state.compensating { jump } else { T::ZERO };
+        let jump = if state.compensating.is_set() { jump } else { T::ZERO };
         state.u_f = state.u_f + jump;
         L::shift(&mut state.law, lost + (owed - jump));
         self.law.bound_integral(&mut state.law, self.integral_bound);
@@ -168,12 +170,14 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// measurement. The next output carries [`Status::OVERRUN`].
     /// Cost: at most `hold_samples` compensator samples, or half of 1000 samples plus the capacity of the delay line.
     pub fn advance(&self, state: &mut ControllerState<T, C::State, L::State>, n: u32) {
-        state.overrun |= n > 0;
-        if !state.started {
+        if n > 0 {
+            state.overrun = Flag::new(true);
+        }
+        if !state.started.is_set() {
             return;
         }
         self.guard.lost(&mut state.guard, n);
-        if state.guard.settle {
+        if state.guard.settle.is_set() {
             self.compensator.skip(
                 &mut state.compensator,
                 state.u.value(),
@@ -228,11 +232,13 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         state: &ControllerState<T, C::State, L::State>,
         words: &mut [u32],
     ) -> Result<usize, SnapshotError> {
-        snapshot::write::<T>(words, Self::body_words(state), |writer| {
-            L::save(&state.law, writer);
-            state.save_own(writer);
-            C::save(&state.compensator, writer);
-        })
+        snapshot::write::<T>(words, Self::body_words(state), |writer| Self::write_state(state, writer))
+    }
+
+    pub(super) fn write_state(state: &ControllerState<T, C::State, L::State>, words: &mut impl Words) {
+        L::save(&state.law, words);
+        state.save_own(words);
+        C::save(&state.compensator, words);
     }
 
     /// Reads a state back from `words`. `state` must have the shape of the saved one (same number type, same

@@ -13,6 +13,7 @@ use crate::real::{Real, coefficient};
 use crate::regulator::Regulator;
 use crate::sample::SampleGuard;
 use crate::setpoint::Setpoint;
+use crate::stored::{Flag, Optional};
 
 /// A whole control loop for one sampling period: the law `L` ([`Pid`], or [`Adrc`]), compensator `C`, limits, set-point, anti-windup, modes, bad
 /// samples, alarms, in the order of the [module](crate::controller).
@@ -48,10 +49,10 @@ pub struct Controller<T, C = NoCompensator, L = Pid<T>> {
     pub(super) alarms: Alarms<T>,
     pub(super) offset_lo: T,
     pub(super) offset_hi: T,
-    pub(super) off_output: Option<T>,
+    pub(super) off_output: Optional<T>,
     pub(super) initial_output: T,
     pub(super) integral_bound: T,
-    pub(super) reversed: bool,
+    pub(super) reversed: Flag,
     pub(super) ts: T,
 }
 
@@ -193,10 +194,10 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
             alarms,
             offset_lo: coefficient(config.offset_lo),
             offset_hi: coefficient(config.offset_hi),
-            off_output: config.off_output.map(coefficient),
+            off_output: Optional::new(config.off_output.map(coefficient)),
             initial_output: limit.into_range(coefficient(config.initial_output)),
             integral_bound: T::from_f64(1e-3 * T::LARGEST),
-            reversed,
+            reversed: Flag::new(reversed),
             ts: coefficient(ts),
         })
     }

@@ -19,6 +19,7 @@ mod law;
 mod numbers;
 mod state;
 mod step;
+mod sum;
 mod usual;
 
 pub use config::ControllerConfig;

@@ -81,13 +81,13 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
             offset: (self.offset_lo, self.offset_hi),
             output: self.output_range(),
             output_steps: self.limit.steps(),
-            off_output: self.off_output,
+            off_output: self.off_output.get(),
             initial_output: self.initial_output,
             anti_windup_gain: self.anti_windup.gain(),
             conditional: self.anti_windup.is_conditional(),
             integral_bound: self.integral_bound,
             alarms: self.alarms.levels(),
-            reversed: self.reversed,
+            reversed: self.reversed.is_set(),
         }
     }
 }

@@ -6,8 +6,9 @@ use crate::mode::Mode;
 use crate::pid::PidState;
 use crate::real::Real;
 use crate::sample::SampleGuardState;
-use crate::snapshot::{Reader, Writer};
+use crate::snapshot::{Reader, Words};
 use crate::status::Status;
+use crate::stored::{Flag, StoredMode};
 
 /// State of a [`Controller`](crate::Controller) with compensator state `S` and the state `P` of its law.
 ///
@@ -19,7 +20,7 @@ pub struct ControllerState<T, S, P = PidState<T>> {
     pub(super) compensator: S,
     pub(super) guard: SampleGuardState,
     /// Mode in force in the last sample.
-    pub(super) mode: Mode,
+    pub(super) mode: StoredMode,
     /// Last output, limited.
     pub(super) u: Accumulator<T>,
     /// Last output before the limits.
@@ -37,12 +38,12 @@ pub struct ControllerState<T, S, P = PidState<T>> {
     /// Last usable offset.
     pub(super) offset: T,
     pub(super) alarms: Status,
-    pub(super) compensating: bool,
-    pub(super) overrun: bool,
+    pub(super) compensating: Flag,
+    pub(super) overrun: Flag,
     /// The state has taken a sample: `u` says something.
-    pub(super) awake: bool,
+    pub(super) awake: Flag,
     /// The state has taken a good sample or was settled.
-    pub(super) started: bool,
+    pub(super) started: Flag,
 }
 
 impl<T: Real, S: Default, P: Default> Default for ControllerState<T, S, P> {
@@ -63,7 +64,7 @@ impl<T: Real, S, P: Default> ControllerState<T, S, P> {
             law: P::default(),
             compensator,
             guard: SampleGuardState::default(),
-            mode: Mode::Hold,
+            mode: StoredMode::new(Mode::Hold),
             u: Accumulator::new(T::ZERO),
             v: T::ZERO,
             pd: T::ZERO,
@@ -73,10 +74,10 @@ impl<T: Real, S, P: Default> ControllerState<T, S, P> {
             r_asked: T::ZERO,
             offset: T::ZERO,
             alarms: Status::NONE,
-            compensating: false,
-            overrun: false,
-            awake: false,
-            started: false,
+            compensating: Flag::default(),
+            overrun: Flag::default(),
+            awake: Flag::default(),
+            started: Flag::default(),
         }
     }
 }
@@ -107,13 +108,13 @@ impl<T: Real, S, P> ControllerState<T, S, P> {
     /// The mode in force in the last sample.
     #[must_use]
     pub fn mode(&self) -> Mode {
-        self.mode
+        self.mode.get()
     }
 
     /// Whether the state has seen a good sample or has been settled.
     #[must_use]
     pub fn is_started(&self) -> bool {
-        self.started
+        self.started.is_set()
     }
 
     /// The compensator's state.
@@ -156,7 +157,7 @@ impl<T: Real, S, P> ControllerState<T, S, P> {
     /// The flags as one word, which they are in memory, too.
     #[inline(always)]
     pub(super) fn flags(&self) -> u32 {
-        u32::from_le_bytes([self.compensating, self.overrun, self.awake, self.started].map(u8::from))
+        u32::from_le_bytes([self.compensating, self.overrun, self.awake, self.started].map(Flag::byte))
     }
 
     /// Words of everything but the compensator, `law` being the numbers of the law's state.
@@ -165,16 +166,16 @@ impl<T: Real, S, P> ControllerState<T, S, P> {
     }
 
     /// Everything but the law's and the compensator's state.
-    pub(super) fn save_own(&self, writer: &mut Writer<'_>) {
+    pub(super) fn save_own(&self, words: &mut impl Words) {
         let (u, r) = (&self.u, &self.r);
-        writer.numbers(&[u.value(), u.carry(), r.value(), r.carry()]);
-        writer.numbers(&[self.v, self.pd, self.u_f, self.y, self.r_asked, self.offset]);
+        words.numbers(&[u.value(), u.carry(), r.value(), r.carry()]);
+        words.numbers(&[self.v, self.pd, self.u_f, self.y, self.r_asked, self.offset]);
         let g = &self.guard;
         let flags = [g.fallback, g.settle, self.compensating, self.overrun, self.awake, self.started];
-        let bits = flags.iter().enumerate().fold(0, |word, (i, &flag)| word | u32::from(flag) << i);
-        writer.word(bits | u32::from(self.mode as u8) << 8);
-        writer.word(u32::from(self.guard.bad));
-        writer.word(self.alarms.bits());
+        let bits = flags.iter().enumerate().fold(0, |word, (i, flag)| word | u32::from(flag.is_set()) << i);
+        words.word(bits | u32::from(self.mode.get() as u8) << 8);
+        words.word(u32::from(self.guard.bad));
+        words.word(self.alarms.bits());
     }
 
     pub(super) fn restore_own(&mut self, reader: &mut Reader<'_>) -> Option<()> {
@@ -183,14 +184,14 @@ impl<T: Real, S, P> ControllerState<T, S, P> {
         self.r = Accumulator::from_parts(r, r_carry);
         [self.v, self.pd, self.u_f, self.y, self.r_asked, self.offset] = reader.numbers()?;
         let word = reader.word()?;
-        let flag = |i: u32| word >> i & 1 == 1;
+        let flag = |i: u32| Flag::new(word >> i & 1 == 1);
         self.guard.fallback = flag(0);
         self.guard.settle = flag(1);
         self.compensating = flag(2);
         self.overrun = flag(3);
         self.awake = flag(4);
         self.started = flag(5);
-        self.mode = Mode::from_number(u8::try_from(word >> 8).ok()?)?;
+        self.mode = StoredMode::new(Mode::from_number(u8::try_from(word >> 8).ok()?)?);
         self.guard.bad = u16::try_from(reader.word()?).ok()?;
         self.alarms = Status::from_bits(reader.word()?);
         Some(())

@@ -11,6 +11,7 @@ use crate::real::Real;
 use crate::regulator::Regulator;
 use crate::sample::{Quality, Verdict};
 use crate::status::Status;
+use crate::stored::{Flag, StoredMode};
 
 /// What a sample works with once its inputs are checked.
 pub(super) struct Checked<T> {
@@ -57,8 +58,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         state: &mut ControllerState<T, C::State, L::State>,
         input: &ControllerInput<T>,
     ) -> (CompensatorOutput<T>, Status) {
-        let mut status = Status::OVERRUN.when(state.overrun);
-        state.overrun = false;
+        let mut status = Status::OVERRUN.when(state.overrun.is_set());
+        state.overrun = Flag::default();
         let offset = state.offset;
 
         // 1. Inputs.
@@ -66,14 +67,14 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         let usable = matches!(verdict, Verdict::Use | Verdict::UseAfterSettling);
         status |= verdict_status(verdict, input.quality);
         status |= self.take_setpoint_and_offset(state, input);
-        if !state.awake {
-            state.awake = true;
+        if !state.awake.is_set() {
+            state.awake = Flag::new(true);
             state.u.set(self.initial_output);
         }
         let (applied, replaced) = self.applied(state.u.value(), input.u_applied);
         status |= replaced;
         let mut own = applied - offset;
-        if !state.started {
+        if !state.started.is_set() {
             if !usable {
                 return self.without_measurement(state, input, applied, status);
             }
@@ -93,8 +94,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         let u_f = self.use_compensator(state, input.compensate, estimate.u_f);
 
         // 4-6. The mode decides who gives the output; range and rate hold in all of them.
-        let was = state.mode;
-        let requested = input.mode.in_force(state.guard.fallback);
+        let was = state.mode.get();
+        let requested = input.mode.in_force(state.guard.fallback.is_set());
         let held = verdict == Verdict::Hold && requested.is_automatic();
         let mode = match (held, was.is_automatic()) {
             (false, _) => requested,
@@ -120,7 +121,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
             // The integral term follows, so that closing the loop moves nothing.
             L::follow(&mut state.law, limited.u - state.pd - u_f - state.offset);
         }
-        state.mode = mode;
+        state.mode = StoredMode::new(mode);
 
         // 7. Alarms, status, output.
         if usable || verdict == Verdict::Await {
@@ -250,7 +251,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         let finite = |x: &T| x.is_finite_number();
         let within = |x: T| self.limit.into_range(x);
         match mode {
-            Mode::Off => self.off_output,
+            Mode::Off => self.off_output.get(),
             Mode::Manual => input.manual.filter(finite).map(within),
             Mode::Track => Some(input.track).filter(finite).map(within),
             Mode::Fallback => self.guard.fallback_output().0,
@@ -331,8 +332,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
     /// Takes the compensator in or out of the sum without a bump; gives what it adds.
     #[inline(always)]
     fn use_compensator(&self, state: &mut ControllerState<T, C::State, L::State>, wanted: bool, u_f: T) -> T {
-        if state.compensating != wanted {
-            state.compensating = wanted;
+        if state.compensating.is_set() != wanted {
+            state.compensating = Flag::new(wanted);
             L::shift(&mut state.law, if wanted { -u_f } else { u_f });
         }
         state.u_f = if wanted { u_f } else { T::ZERO };
@@ -349,8 +350,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         let asked = self.setpoint_of(input.mode, input).map_or(input.y, |r| self.setpoint.into_range(r));
         self.settle(state, self.setpoint.start(asked, input.y), input.y, applied);
         state.r_asked = self.setpoint.into_range(asked);
-        state.mode = Mode::Hold;
-        state.compensating = input.compensate;
+        state.mode = StoredMode::new(Mode::Hold);
+        state.compensating = Flag::new(input.compensate);
         let _ = self.take_setpoint_and_offset(state, input);
     }
 
@@ -361,7 +362,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         self.law.settle(&mut state.law, seen, own);
         state.u.set(applied);
         state.v = applied;
-        state.mode = Mode::Hold;
+        state.mode = StoredMode::new(Mode::Hold);
     }
 
     /// A zeroed state that has not seen a good measurement: the modes that need none work, the others hold.
@@ -372,14 +373,14 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         applied: T,
         status: Status,
     ) -> (CompensatorOutput<T>, Status) {
-        let requested = input.mode.in_force(state.guard.fallback);
+        let requested = input.mode.in_force(state.guard.fallback.is_set());
         let mode = if requested.is_automatic() { Mode::Hold } else { requested };
         state.v = self.target(mode, input).unwrap_or(applied);
         state.u.set(applied);
         let slowest = if mode == Mode::Fallback { Some(self.guard.fallback_output().1) } else { None };
         let limited = self.limit_output(state, state.v, slowest);
         state.r.set(state.r_asked);
-        state.mode = mode;
+        state.mode = StoredMode::new(mode);
         let status = status | limited_status(limited) | Status::UNINITIALISED;
         (CompensatorOutput::default(), status)
     }
@@ -413,8 +414,8 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         if status.has_any(Status::LIMITED_HIGH | Status::LIMITED_LOW) {
             let full = status.has(Status::LIMITED_HIGH);
             let empty = status.has(Status::LIMITED_LOW);
-            up |= if self.reversed { empty } else { full };
-            down |= if self.reversed { full } else { empty };
+            up |= if self.reversed.is_set() { empty } else { full };
+            down |= if self.reversed.is_set() { full } else { empty };
         }
         ControllerOutput {
             u: state.u.value(),
@@ -426,7 +427,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
             r,
             blocked_up: up,
             blocked_down: down,
-            mode: state.mode,
+            mode: state.mode.get(),
             status,
         }
     }

@@ -22,7 +22,7 @@ impl<T: Real, C: Compensate<T>, L: Regulator<T>> Controller<T, C, L> {
         input: &ControllerInput<T>,
     ) -> bool {
         self.guard.goes_on(&state.guard, input.y, input.quality)
-            && input.mode == state.mode
+            && state.mode.is(input.mode)
             && input.mode.is_automatic()
             && state.flags() == FLAGS_OF_A_LOOP_AT_WORK | u32::from(input.compensate)
     }
