@@ -21,6 +21,7 @@
  *   - It holds no address: between two calls it may be moved and copied as bytes, into any memory aligned to CTL_F32_ALIGN.
  *   - Only the library that wrote it can read it. For another build (new firmware) use save and restore.
  *   - `size` in each call is the number of bytes at `state`, as in `sizeof loop`.
+ *   - Whatever bits it holds, no call reads or writes beyond it. Damage to its parameters is found (CTL_ERROR_DAMAGED).
  *   - One block is used by one call at a time. Different blocks do not disturb each other: there are no globals.
  *
  * Every function with a status gives CTL_OK or an error, and on an error leaves outputs and block as they were. Nothing
@@ -57,6 +58,7 @@ extern "C" {
 #define CTL_ERROR_SNAPSHOT_SHAPE 11    /* a snapshot of a block of another shape */
 #define CTL_ERROR_SNAPSHOT_CHECKSUM 12 /* a damaged snapshot */
 #define CTL_ERROR_SNAPSHOT_INVALID 13  /* an intact snapshot that this configuration cannot go on from */
+#define CTL_ERROR_DAMAGED 14           /* something has written over the block's law or state */
 
 /* ---- Modes ----------------------------------------------------------------------------------------------------- */
 

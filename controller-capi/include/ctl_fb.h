@@ -14,6 +14,7 @@
  *         write(vars.op);
  *
  * The memory of a block belongs to the caller. Between two calls it may be moved and copied as bytes, to any address.
+ * Memory that has been damaged meanwhile is found: the block begins anew at vars.op, with CTL_FB_STATUS_STATE_LOST.
  * Parameters may change between any two calls. A set that is refused changes nothing; `status`, `error`, `error_param` and
  * `error_reason` say what is wrong.
  */
@@ -208,7 +209,10 @@ typedef struct ctl_f64_fb_vars {
 
 /* ---- Functions ------------------------------------------------------------------------------------------------- */
 
-/* Name of the parameter that `error_param` is about; never null, lives as long as the program. */
+/*
+ * Name of the parameter that `error_param` is about; never null, lives as long as the program. 0: "no parameter"; a number
+ * that error_param never has: "unknown parameter".
+ */
 const char *ctl_fb_param_name(int32_t param);
 
 /* The macros above as functions; 0 above CTL_MAX_DELAY. */

@@ -5,8 +5,13 @@
 //! ```
 //! The delay memory begins at [`Number::SIZE_WITH_COMPENSATOR`]. What stands in a block between two calls is no address: the law's state
 //! gets that of the delay memory at the beginning of a call and loses it at the end.
+//!
+//! Between two calls anything may happen to the memory. So no type in it has bytes that are no value of it, and the core has
+//! no operation that some number makes dangerous: whatever is found, a call reads and writes the block alone. The header
+//! carries sums over itself and over the law, which each call compares; in the state a call finds numbers that are not finite.
 
 use crate::fault::Error;
+use crate::header::{self, Header, Kind};
 use crate::io::Output;
 use controller_core::{AnyCompensator, Compensate, Controller, ControllerState, NoCompensator, Real};
 use core::ffi::c_void;
@@ -21,6 +26,8 @@ pub const MAX_DELAY: u32 = (1 << 24) - 1;
 pub trait Number: Real {
     /// First word of an initialised block.
     const MAGIC: u32;
+    /// The exponent in the last word of a number: all of it is set when the number is not finite.
+    const EXPONENT: u32;
     /// Size of a block without a compensator \[bytes\].
     const SIZE_WITHOUT_COMPENSATOR: usize;
     /// Size of a block with a compensator but for its delay memory \[bytes\].
@@ -29,17 +36,26 @@ pub trait Number: Real {
 
 impl Number for f32 {
     const MAGIC: u32 = 0x4654_4C43;
+    const EXPONENT: u32 = 0x7F80_0000;
     const SIZE_WITHOUT_COMPENSATOR: usize = 352;
     const SIZE_WITH_COMPENSATOR: usize = 832;
 }
 
 impl Number for f64 {
     const MAGIC: u32 = 0x4454_4C43;
+    const EXPONENT: u32 = 0x7FF0_0000;
     const SIZE_WITHOUT_COMPENSATOR: usize = 640;
     const SIZE_WITH_COMPENSATOR: usize = 1472;
 }
 
 const _: () = assert!(fits::<f32>() && fits::<f64>());
+const _: () = assert!(any_bits::<f32>() && any_bits::<f64>());
+
+/// Whether every bit pattern of a block is a value of its types: else `None` would be one that is not, and take no room.
+const fn any_bits<T: Number>() -> bool {
+    size_of::<Option<Fixed<T, NoCompensator>>>() > size_of::<Fixed<T, NoCompensator>>()
+        && size_of::<Option<Fixed<T, Delayed<T>>>>() > size_of::<Fixed<T, Delayed<T>>>()
+}
 
 const fn fits<T: Number>() -> bool {
     size_of::<Fixed<T, NoCompensator>>() <= T::SIZE_WITHOUT_COMPENSATOR
@@ -114,33 +130,6 @@ pub(crate) struct Loop<T: Real, C: Compensate<T>> {
     pub(crate) state: ControllerState<T, C::State>,
 }
 
-/// Whether a block's loop has a compensator; the numbers stand in blocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub(crate) enum Kind {
-    Plain = 1,
-    Compensated = 2,
-}
-
-/// The beginning of a block.
-#[repr(C, align(8))]
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Header {
-    magic: u32,
-    /// Which library wrote the block: layout and meaning may differ in another one.
-    build: u32,
-    kind: u32,
-    /// Cells of delay memory.
-    cells: u32,
-    /// Over the words before it.
-    check: u32,
-    /// The mode of `set_mode`.
-    pub(crate) set: i32,
-    /// The last mode that was asked for and known.
-    pub(crate) asked: i32,
-    reserved: i32,
-}
-
 /// The part of a block that has one size.
 #[repr(C)]
 struct Fixed<T: Real, C: Compensate<T>> {
@@ -149,50 +138,9 @@ struct Fixed<T: Real, C: Compensate<T>> {
     looped: Loop<T, C>,
 }
 
-/// FNV-1a, 32 bits.
-const fn hash(bytes: &[u8], mut hash: u32) -> u32 {
-    let mut rest = bytes;
-    while let [byte, others @ ..] = rest {
-        hash = (hash ^ *byte as u32).wrapping_mul(0x0100_0193);
-        rest = others;
-    }
-    hash
-}
-
-/// Stands for the library and the compiler that built it.
+/// Stands for the library that writes blocks, and for the sizes of their parts.
 const fn build<T: Number>() -> u32 {
-    let version = concat!(env!("CARGO_PKG_VERSION"), " ", env!("CTL_COMPILER"));
-    let sizes = [size_of::<Fixed<T, NoCompensator>>(), size_of::<Fixed<T, Delayed<T>>>()];
-    let [plain, compensated] = sizes;
-    let seed = hash(version.as_bytes(), 0x811C_9DC5 ^ crate::ABI_VERSION);
-    hash(&(compensated as u64).to_le_bytes(), hash(&(plain as u64).to_le_bytes(), seed))
-}
-
-impl Header {
-    pub(crate) fn new<T: Number>(kind: Kind, cells: u32, mode: i32) -> Self {
-        let header = Self {
-            magic: T::MAGIC,
-            build: build::<T>(),
-            kind: kind as u32,
-            cells,
-            check: 0,
-            set: mode,
-            asked: mode,
-            reserved: 0,
-        };
-        Self { check: header.sum(), ..header }
-    }
-
-    /// The same for a loop of this kind.
-    pub(crate) fn of_kind(self, kind: Kind) -> Self {
-        let header = Self { kind: kind as u32, ..self };
-        Self { check: header.sum(), ..header }
-    }
-
-    fn sum(&self) -> u32 {
-        let words = [self.magic, self.build, self.kind, self.cells];
-        words.iter().fold(0x811C_9DC5, |sum, word| hash(&word.to_le_bytes(), sum))
-    }
+    header::build([size_of::<Fixed<T, NoCompensator>>(), size_of::<Fixed<T, Delayed<T>>>()])
 }
 
 /// Which block a call is about: an address that is aligned and not null.
@@ -219,10 +167,11 @@ impl Memory {
     /// The memory is the caller's to write, and large enough for the kind of loop; its cells have been cleared.
     pub(crate) unsafe fn write<T: Number, C: Compensate<T>>(
         self,
-        header: Header,
+        mut header: Header,
         last: Output<T>,
         looped: Loop<T, C>,
     ) {
+        header.law = looped.law.checksum().value();
         // SAFETY: aligned by `new`, large enough by the caller.
         unsafe { self.at::<Fixed<T, C>>(0).write(Fixed { header, last, looped }) };
     }
@@ -270,19 +219,31 @@ pub(crate) enum Either<P, C> {
 
 impl<T: Number> Block<T> {
     /// # Errors
+    /// Those of [`find`](Self::find), and a damaged law.
+    ///
+    /// # Safety
+    /// As for [`find`](Self::find).
+    pub(crate) unsafe fn open(state: *mut c_void, size: usize) -> Result<Self, Error> {
+        // SAFETY: by the caller.
+        let mut block = unsafe { Self::find(state, size) }?;
+        if block.law_sum() != block.header().law {
+            return Err(Error::Damaged);
+        }
+        Ok(block)
+    }
+
     /// Null, alignment, size, not initialised, another version.
     ///
     /// # Safety
-    /// `size` bytes at `state` are the caller's to read and write and are not used by anybody else meanwhile. If they begin
-    /// like an initialised block, they are one.
-    pub(crate) unsafe fn open(state: *mut c_void, size: usize) -> Result<Self, Error> {
+    /// `size` bytes at `state` are the caller's to read and write and are not used by anybody else meanwhile.
+    pub(crate) unsafe fn find(state: *mut c_void, size: usize) -> Result<Self, Error> {
         let memory = Memory::new(state)?;
         if size < T::SIZE_WITHOUT_COMPENSATOR {
             return Err(Error::Size);
         }
         // SAFETY: aligned, and large enough for a header; any bytes are a header.
         let header = unsafe { memory.at::<Header>(0).read() };
-        if header.magic != T::MAGIC || header.check != header.sum() {
+        if header.magic != T::MAGIC || !header.is_intact() {
             return Err(Error::NotInitialised);
         }
         if header.build != build::<T>() {
@@ -290,7 +251,7 @@ impl<T: Number> Block<T> {
         }
         let kind = match header.kind {
             1 => Kind::Plain,
-            2 => Kind::Compensated,
+            2 if header.cells > 0 => Kind::Compensated,
             _ => return Err(Error::NotInitialised),
         };
         // A block without a compensator may get one, in the room it had at `init`.
@@ -299,6 +260,37 @@ impl<T: Number> Block<T> {
         }
         Ok(Self { memory, kind, cells: header.cells, number: core::marker::PhantomData })
     }
+
+    #[inline(never)]
+    fn law_sum(&self) -> u32 {
+        match self.kind {
+            Kind::Plain => {
+                let offset = core::mem::offset_of!(Fixed<T, NoCompensator>, looped);
+                // SAFETY: within the size that `find` has checked; any bits are a loop.
+                unsafe { (*self.memory.at::<Loop<T, NoCompensator>>(offset)).law.checksum() }
+            }
+            Kind::Compensated => {
+                let offset = core::mem::offset_of!(Fixed<T, Delayed<T>>, looped);
+                // SAFETY: as above.
+                unsafe { (*self.memory.at::<Loop<T, Delayed<T>>>(offset)).law.checksum() }
+            }
+        }
+        .value()
+    }
+
+    /// After a swap of the law.
+    pub(crate) fn seal(&mut self) {
+        let law = self.law_sum();
+        self.header().law = law;
+    }
+
+    /// A sum over state and delay memory, and the law's.
+    pub(crate) fn sums(&mut self) -> [u32; 2] {
+        [self.with(|l| l.state_sum(), |l| l.state_sum()), self.header().law]
+    }
+
+    /// Whose block it is, for a header.
+    pub(crate) const MARKS: [u32; 2] = [T::MAGIC, build::<T>()];
 
     pub(crate) fn memory(&self) -> Memory {
         self.memory
@@ -314,7 +306,7 @@ impl<T: Number> Block<T> {
     }
 
     pub(crate) fn header(&mut self) -> &mut Header {
-        // SAFETY: by the contract of `open`; the header is at the beginning of either kind.
+        // SAFETY: by the contract of `find`; the header is at the beginning of either kind.
         unsafe { &mut *self.memory.at::<Header>(0) }
     }
 
@@ -324,12 +316,12 @@ impl<T: Number> Block<T> {
     }
 
     pub(crate) fn last(&self) -> Output<T> {
-        // SAFETY: by the contract of `open`.
+        // SAFETY: by the contract of `find`.
         unsafe { self.place_of_last().read() }
     }
 
     pub(crate) fn set_last(&mut self, last: Output<T>) {
-        // SAFETY: by the contract of `open`.
+        // SAFETY: by the contract of `find`.
         unsafe { self.place_of_last().write(last) };
     }
 
@@ -342,13 +334,13 @@ impl<T: Number> Block<T> {
         match self.kind {
             Kind::Plain => {
                 let offset = core::mem::offset_of!(Fixed<T, NoCompensator>, looped);
-                // SAFETY: by the contract of `open`, an initialised block of this kind.
+                // SAFETY: within the size that `find` has checked; any bits are a loop.
                 plain(unsafe { &mut *self.memory.at(offset) })
             }
             Kind::Compensated => {
                 let offset = core::mem::offset_of!(Fixed<T, Delayed<T>>, looped);
                 let cells: *mut T = self.memory.at(T::SIZE_WITH_COMPENSATOR);
-                // SAFETY: by the contract of `open`; the cells, which `init` has written, are behind the loop and used only
+                // SAFETY: as above; the cells, which are numbers whatever their bits, are behind the loop and used only
                 // through it, in this call.
                 let (looped, cells): (&mut Loop<T, Delayed<T>>, _) =
                     unsafe { (&mut *self.memory.at(offset), Cells::new(cells, self.cells as usize)) };
@@ -365,7 +357,7 @@ impl<T: Number> Block<T> {
         match self.kind {
             Kind::Plain => {
                 let offset = core::mem::offset_of!(Fixed<T, NoCompensator>, looped);
-                // SAFETY: by the contract of `open`; the loop owns nothing, so a copy of its bytes is one more loop.
+                // SAFETY: as in `with`; the loop owns nothing, so a copy of its bytes is one more loop.
                 Either::Plain(unsafe { self.memory.at::<Loop<T, NoCompensator>>(offset).read() })
             }
             Kind::Compensated => {

@@ -1,9 +1,10 @@
 //! What each function does, for both number types. Errors leave everything as it was.
 
-use crate::block::{self, Block, Cells, Delayed, Either, Header, Kind, Loop, Memory, Number, check_pointer};
+use crate::block::{self, Block, Cells, Delayed, Either, Loop, Memory, Number, check_pointer};
 use crate::block::{MAX_DELAY, cells_in, without_address};
 use crate::config::{Config, STRUCT_SIZE};
 use crate::fault::{Error, Fault, Faults, number};
+use crate::header::{Header, Kind};
 use crate::io::{Input, Output, mode};
 use controller_core::{
     Compensate, Controller, ControllerConfig, ControllerState, Mode, NoCompensator, Param, Real, Reason,
@@ -201,7 +202,7 @@ pub(crate) unsafe fn init<T: Number>(
     match law {
         Either::Plain(law) => {
             let state = law.zeroed();
-            let header = Header::new::<T>(Kind::Plain, cells, auto);
+            let header = Header::new(Block::<T>::MARKS, Kind::Plain, cells, auto);
             // SAFETY: the caller's memory; `build_for` has checked that it is large enough.
             unsafe { memory.write(header, last, Loop { law, state }) };
         }
@@ -210,7 +211,7 @@ pub(crate) unsafe fn init<T: Number>(
             let cleared = unsafe { memory.clear_cells::<T>(cells) };
             let mut looped = compensated(law, cleared)?;
             without_address(&mut looped);
-            let header = Header::new::<T>(Kind::Compensated, cells, auto);
+            let header = Header::new(Block::<T>::MARKS, Kind::Compensated, cells, auto);
             // SAFETY: as above.
             unsafe { memory.write(header, last, looped) };
         }
@@ -240,6 +241,10 @@ impl<T: Real, C: Compensate<T>> Loop<T, C> {
     /// What there is to read until the next step.
     pub(crate) fn at_rest(&self) -> Output<T> {
         Output::at_rest(self.state.u(), self.state.mode(), self.state.is_started())
+    }
+
+    pub(crate) fn state_sum(&self) -> u32 {
+        Controller::<T, C>::state_checksum(&self.state).value()
     }
 
     fn step(&mut self, input: &Input<T>, mode: Mode, status: Status) -> Output<T> {
@@ -286,12 +291,34 @@ pub(crate) unsafe fn step<T: Number>(
     let mut block = unsafe { Block::<T>::open(state, size) }?;
     // SAFETY: not null, aligned; any bits are an input.
     let input = unsafe { input.read() };
-    let (mode, status) = block.header().ask(input.mode);
-    let out = block.with(|l| l.step(&input, mode, status), |l| l.step(&input, mode, status));
-    block.set_last(out);
+    let out = block.step(&input)?;
     // SAFETY: not null, aligned, the caller's.
     unsafe { output.write(out) };
     Ok(())
+}
+
+/// By its bits: where the machine has no such arithmetic, a comparison is a long call.
+fn not_finite<T: Number>(x: T) -> bool {
+    let [low, high] = x.to_words();
+    let last = if T::WORDS == 2 { high } else { low };
+    last & T::EXPONENT == T::EXPONENT
+}
+
+impl<T: Number> Block<T> {
+    pub(crate) fn step(&mut self, input: &Input<T>) -> Result<Output<T>, Error> {
+        let (mode, status) = self.header().ask(input.mode);
+        let out = self.with(|l| l.step(input, mode, status), |l| l.step(input, mode, status));
+        // No undamaged state gives such numbers, and they do not go away.
+        if not_finite(out.v) | not_finite(out.pd) | not_finite(out.d_hat) {
+            return Err(Error::Damaged);
+        }
+        self.set_last(out);
+        Ok(out)
+    }
+
+    pub(crate) fn advance(&mut self, samples: u32) {
+        self.with(|l| l.law.advance(&mut l.state, samples), |l| l.law.advance(&mut l.state, samples));
+    }
 }
 
 /// # Safety
@@ -309,8 +336,7 @@ pub(crate) unsafe fn read<T: Number>(state: *const c_void, size: usize, output: 
 /// As for [`Block::open`].
 pub(crate) unsafe fn advance<T: Number>(state: *mut c_void, size: usize, samples: u32) -> Done {
     // SAFETY: by the caller.
-    let mut block = unsafe { Block::<T>::open(state, size) }?;
-    block.with(|l| l.law.advance(&mut l.state, samples), |l| l.law.advance(&mut l.state, samples));
+    unsafe { Block::<T>::open(state, size) }?.advance(samples);
     Ok(())
 }
 
@@ -324,6 +350,19 @@ pub(crate) unsafe fn adopt<T: Number>(
 ) -> Done {
     // SAFETY: by the caller.
     let mut block = unsafe { Block::<T>::open(state, size) }?;
+    // SAFETY: by the caller.
+    unsafe { replace(&mut block, config, faults) }
+}
+
+/// Puts another law into a block.
+///
+/// # Safety
+/// As for [`build_for`].
+pub(crate) unsafe fn replace<T: Number>(
+    block: &mut Block<T>,
+    config: *const Config,
+    faults: *mut Faults,
+) -> Done {
     let cells = block.cells();
     // What the block had room for at `init`.
     let room = match cells {
@@ -333,14 +372,20 @@ pub(crate) unsafe fn adopt<T: Number>(
     // SAFETY: by the caller.
     let law = unsafe { build_for::<T>(config, room, faults) }?;
     match (block.kind(), law) {
-        (Kind::Plain, Either::Plain(law)) => block.with(|l| l.replace(law), |_| ()),
-        (Kind::Compensated, Either::Compensated(law)) => block.with(|_| (), |l| l.replace(law)),
-        (Kind::Compensated, Either::Plain(law)) => remove_compensator(&mut block, law),
+        (Kind::Plain, Either::Plain(law)) => {
+            block.with(|l| l.replace(law), |_| ());
+            block.seal();
+        }
+        (Kind::Compensated, Either::Compensated(law)) => {
+            block.with(|_| (), |l| l.replace(law));
+            block.seal();
+        }
+        (Kind::Compensated, Either::Plain(law)) => remove_compensator(block, law),
         (Kind::Plain, Either::Compensated(law)) => {
             // SAFETY: the block has so many cells, which are enough for the law: `build_for` has checked it.
             let cleared = unsafe { block.memory().clear_cells::<T>(cells) };
             let fresh = law.compensator().state(cleared).map_err(|_| Error::Size)?;
-            add_compensator(&mut block, law, fresh);
+            add_compensator(block, law, fresh);
         }
     }
     Ok(())

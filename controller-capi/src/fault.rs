@@ -92,6 +92,8 @@ pub enum Error {
     SnapshotChecksum = 12,
     /// An intact snapshot that holds no state this configuration can go on from.
     SnapshotInvalid = 13,
+    /// Something has written over the law in the block, or its state has a number that is not finite.
+    Damaged = 14,
 }
 
 impl From<SnapshotError> for Error {
@@ -148,6 +150,7 @@ pub const fn error_text(code: i32) -> &'static CStr {
         11 => c"the snapshot belongs to a block of another shape",
         12 => c"the snapshot is damaged",
         13 => c"the snapshot holds no state that this configuration can go on from",
+        14 => c"the memory of the block is damaged",
         _ => c"unknown error code",
     }
 }

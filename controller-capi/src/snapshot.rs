@@ -3,8 +3,9 @@
 //! Word 0: the format. Word 1: kind of loop and modes. Word 2: the complement of word 1. Then the core's words, which carry
 //! their own version, shape and checksum.
 
-use crate::block::{Block, Kind, Loop, Number, check_pointer};
+use crate::block::{Block, Loop, Number, check_pointer};
 use crate::fault::Error;
+use crate::header::Kind;
 use crate::io::{Output, mode};
 use controller_core::{Compensate, Controller, Real, SnapshotError};
 use core::cell::Cell;

@@ -3,13 +3,18 @@
 //! It may be at any address, aligned or not, and at another one in each call: an array of words in a runtime is moved, and
 //! not every runtime aligns it. The contents begin at the first aligned address; where they are found elsewhere, they are
 //! moved there first.
+//!
+//! Memory that is kept over a power failure may be half old and half new. So a sum over everything that the block remembers,
+//! law and delay memory included, is taken at the end of each call and compared at the beginning of the next one.
 
 use super::Number;
 use super::parameters::Refusal;
 use super::period::Watch;
-use super::vars::{Flags, Parameters, Reports, Results};
+use super::vars::{Choices, Flags, Parameters, Reports, Results, Settings, Switches};
 use crate::block::{ALIGN, Block};
 use crate::fault::Error;
+use controller_core::Checksum;
+use controller_core::snapshot::Words;
 use core::ffi::c_void;
 
 /// What the last sample gave; the calls without one give it again.
@@ -38,6 +43,8 @@ pub(crate) struct Instance<T> {
     magic: u32,
     /// Its complement.
     seal: u32,
+    /// Over everything else and over the loop, when the last call ended.
+    sum: u32,
     /// The parameters in force.
     pub(crate) parameters: Parameters<T>,
     pub(crate) refused: Refused,
@@ -59,6 +66,7 @@ impl<T: Number> Instance<T> {
         Self {
             magic: T::FB_MAGIC,
             seal: !T::FB_MAGIC,
+            sum: 0,
             parameters,
             refused: Refused::default(),
             watch: Watch::default(),
@@ -69,6 +77,45 @@ impl<T: Number> Instance<T> {
             lost: u8::from(lost),
             given: Given::default(),
         }
+    }
+}
+
+impl<T: Number> Instance<T> {
+    /// As zero bytes.
+    fn nothing() -> Self {
+        let parameters = Parameters {
+            settings: Settings::default(),
+            choices: Choices::default(),
+            switches: Switches::default(),
+        };
+        Self { magic: 0, seal: 0, ..Self::new(parameters, false) }
+    }
+
+    /// A sum over what is remembered here and over the sums of the loop.
+    fn checksum(&self, looped: [u32; 2]) -> u32 {
+        let mut sum = Checksum::new();
+        looped.iter().for_each(|&word| sum.word(word));
+        let Parameters { settings, choices, switches } = &self.parameters;
+        sum.numbers(settings.as_slice());
+        choices.as_slice().iter().for_each(|n| sum.word(n.cast_unsigned()));
+        switches.as_slice().iter().for_each(|&flag| sum.word(flag.into()));
+        let Refused { digest, error, refusal } = self.refused;
+        let half = |part: u64| u32::try_from(part & u64::from(u32::MAX)).unwrap_or_default();
+        [half(digest), half(digest >> 32)].iter().for_each(|&word| sum.word(word));
+        [error, refusal.param, refusal.reason].iter().for_each(|n| sum.word(n.cast_unsigned()));
+        self.watch.write(&mut sum);
+        sum.word(self.since);
+        sum.word(u32::from_le_bytes([self.ran, self.ack, self.restart, self.lost]));
+        let Given { results, reports, flags } = &self.given;
+        sum.numbers(results.as_slice());
+        reports.list().for_each(|n| sum.word(n));
+        flags.as_slice().iter().for_each(|&flag| sum.word(flag.into()));
+        sum.value()
+    }
+
+    /// At the end of a call; `looped` are the sums of the loop.
+    pub(crate) fn close(&mut self, looped: [u32; 2]) {
+        self.sum = self.checksum(looped);
     }
 }
 
@@ -98,8 +145,7 @@ impl Place {
     /// Null; too small for a loop without a compensator, or for the loop that is there.
     ///
     /// # Safety
-    /// `size` bytes at `state` are the caller's to read and write and are not used by anybody else meanwhile. If they begin
-    /// like an instance, this library has written them.
+    /// `size` bytes at `state` are the caller's to read and write and are not used by anybody else meanwhile.
     pub(crate) unsafe fn find<T: Number>(state: *mut c_void, size: usize) -> Result<(Self, Contents), Error> {
         if state.is_null() {
             return Err(Error::Null);
@@ -118,7 +164,11 @@ impl Place {
         let Some(found) =
             core::iter::once(offset).chain(0..ALIGN).find(|&at| header(at) == [T::FB_MAGIC, !T::FB_MAGIC])
         else {
-            let nothing = header(offset) == [0, 0];
+            // SAFETY: there is room for an instance and the beginning of a block; any bits are these.
+            let nothing = unsafe {
+                *place.instance::<T>() == Instance::nothing()
+                    && place.loop_memory::<T>().cast::<u64>().read() == 0
+            };
             return Ok((place, if nothing { Contents::Nothing } else { Contents::Unknown }));
         };
         if found != offset {
@@ -134,11 +184,13 @@ impl Place {
                 rest.write_bytes(0, count);
             }
         }
-        // SAFETY: by the caller, with the sizes checked above.
-        match unsafe { Block::<T>::open(place.loop_memory::<T>(), loop_size) } {
-            Ok(_) => Ok((place, Contents::Running)),
+        // SAFETY: by the caller, with the sizes checked above; any bits are an instance.
+        let (block, instance) =
+            unsafe { (Block::<T>::open(place.loop_memory::<T>(), loop_size), place.instance::<T>()) };
+        match block.map(|mut block| block.sums()) {
+            Ok(looped) if instance.sum == instance.checksum(looped) => Ok((place, Contents::Running)),
             Err(Error::Size) => Err(Error::Size),
-            Err(_) => Ok((place, Contents::Unknown)),
+            _ => Ok((place, Contents::Unknown)),
         }
     }
 
@@ -148,9 +200,9 @@ impl Place {
     }
 
     /// # Safety
-    /// As for [`find`](Self::find), and an instance has been found or written here. One reference at a time.
+    /// As for [`find`](Self::find). One reference at a time.
     pub(crate) unsafe fn instance<'a, T: Number>(&self) -> &'a mut Instance<T> {
-        // SAFETY: aligned, and by the caller.
+        // SAFETY: aligned, any bits are an instance, the rest by the caller.
         unsafe { &mut *self.start.cast::<Instance<T>>() }
     }
 

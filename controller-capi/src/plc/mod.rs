@@ -42,7 +42,10 @@ impl Number for f64 {
 const _: () = assert!(fits::<f32>() && fits::<f64>());
 
 const fn fits<T: Number>() -> bool {
-    size_of::<instance::Instance<T>>() <= T::FB_FIXED && T::FB_FIXED.is_multiple_of(crate::block::ALIGN)
+    size_of::<instance::Instance<T>>() <= T::FB_FIXED
+        && T::FB_FIXED.is_multiple_of(crate::block::ALIGN)
+        // Every bit pattern is an instance: else `None` would be one that is not, and take no room.
+        && size_of::<Option<instance::Instance<T>>>() > size_of::<instance::Instance<T>>()
 }
 
 /// Types of variables.

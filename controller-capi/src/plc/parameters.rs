@@ -279,9 +279,11 @@ fn origin(field: i32) -> i32 {
     }
 }
 
-/// The name of what ERROR_PARAM says.
+/// The name of what ERROR_PARAM says; of 0, which says nothing, and of numbers that it never has, as well.
 pub(crate) fn param_name(number: i32) -> &'static CStr {
-    let state = (number == STATE).then_some(c"state");
-    let parameter = Setting::name(number).or_else(|| Choice::name(number));
-    parameter.or(state).unwrap_or(c"unknown parameter")
+    match number {
+        0 => c"no parameter",
+        STATE => c"state",
+        _ => Setting::name(number).or_else(|| Choice::name(number)).unwrap_or(c"unknown parameter"),
+    }
 }

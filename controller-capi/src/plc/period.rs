@@ -1,5 +1,7 @@
 //! Whether the law runs at the period it was built for, by what the task measures.
 
+use controller_core::snapshot::Words;
+
 /// A measured period this far off TS is shown.
 const SHOWN: f64 = 0.1;
 /// Beyond this the compensator is not used: its model and its dead time are in samples.
@@ -96,6 +98,12 @@ impl Watch {
         }
         timing.compensator_out = self.out != 0;
         timing
+    }
+
+    /// All of it.
+    pub(crate) fn write(&self, words: &mut impl Words) {
+        words.number(self.elapsed);
+        [self.unmeasured, self.unusable, self.calm, self.out, self.far].iter().for_each(|&n| words.word(n));
     }
 
     /// Other parameters: what was measured for the old ones says nothing.

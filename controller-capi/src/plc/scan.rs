@@ -6,7 +6,7 @@ use super::period::Timing;
 use super::span::round;
 use super::vars::{Commands, Flags, Parameters, Reports, Results, Vars};
 use super::{Number, status};
-use crate::block::check_pointer;
+use crate::block::{Block, check_pointer};
 use crate::calls;
 use crate::config::Config;
 use crate::fault::{Error, Faults};
@@ -87,6 +87,8 @@ unsafe fn run<T: Number>(state: *mut c_void, size: usize, vars: &mut Vars<T>) ->
     }
     (vars.results, vars.reports, vars.flags) =
         (instance.given.results, instance.given.reports, instance.given.flags);
+    // SAFETY: the loop has been found or initialised.
+    instance.close(unsafe { looped.block::<T>() }.map_err(unnamed)?.sums());
     Ok(())
 }
 
@@ -111,6 +113,17 @@ fn apply<T: Number>(
 struct Looped {
     memory: *mut c_void,
     size: usize,
+}
+
+impl Looped {
+    /// The block, whose law has been looked at in this call.
+    ///
+    /// # Safety
+    /// As for [`Block::find`].
+    unsafe fn block<T: Number>(self) -> Result<Block<T>, Error> {
+        // SAFETY: by the caller.
+        unsafe { Block::find(self.memory, self.size) }
+    }
 }
 
 impl<T: Number> Instance<T> {
@@ -143,14 +156,12 @@ impl<T: Number> Instance<T> {
         let lost = if self.restart != 0 { u32::MAX } else { timing.lost };
         let y = self.measurement(vars);
         let input = self.input(vars, y, timing.compensator_out);
-        let mut output = Output::default();
         // SAFETY: by the caller.
-        unsafe {
-            if lost > 0 {
-                calls::advance::<T>(looped.memory, looped.size, lost)?;
-            }
-            calls::step::<T>(looped.memory, looped.size, &input, &mut output)?;
+        let mut block = unsafe { looped.block::<T>() }?;
+        if lost > 0 {
+            block.advance(lost);
         }
+        let output = block.step(&input)?;
         if self.ack != 0 {
             self.lost = 0;
         }
@@ -178,7 +189,7 @@ impl<T: Number> Instance<T> {
         }
         let adopted = apply(&parameters, |config, faults| {
             // SAFETY: by the caller.
-            unsafe { calls::adopt::<T>(looped.memory, looped.size, config, faults) }
+            unsafe { calls::replace(&mut looped.block::<T>()?, config, faults) }
         });
         if let Err((error, refusal)) = adopted {
             self.refused = Refused { digest, error: error as i32, refusal };

@@ -20,7 +20,12 @@ macro_rules! part {
         impl $(<$real: Copy>)? $part $(<$real>)? {
             /// The values, in order.
             pub fn list(&self) -> impl Iterator<Item = $type> {
-                [$(self.$field),*].into_iter()
+                self.as_slice().iter().copied()
+            }
+
+            pub(crate) fn as_slice(&self) -> &[$type] {
+                // SAFETY: fields of one type in the order of C stand like those of an array.
+                unsafe { core::slice::from_raw_parts((&raw const *self).cast(), Self::NAMES.len()) }
             }
         }
     };
@@ -345,6 +350,16 @@ part! {
     }
 }
 
+impl Reports {
+    /// The values, in order.
+    pub fn list(&self) -> impl Iterator<Item = u32> {
+        let Self { op_raw, mode, error, error_param, error_reason, status } = *self;
+        [op_raw, mode, error, error_param, error_reason, status.cast_signed()]
+            .map(i32::cast_unsigned)
+            .into_iter()
+    }
+}
+
 /// `ctl_f32_fb_vars`, `ctl_f64_fb_vars`: the variables of the function block. In C the fields of all parts stand in one
 /// structure, in this order.
 #[repr(C)]
@@ -436,3 +451,11 @@ impl<T: Real> Vars<T> {
             .map(|(name, kind, at)| (name, if name == "status" { Kind::Bits } else { kind }, at))
     }
 }
+
+// On this side the layout is asserted for every target that is built; the C side asserts each field (`tests/c/layout_fb.c`).
+const _: () = {
+    use core::mem::offset_of;
+    assert!(size_of::<Vars<f32>>() == 372 && size_of::<Vars<f64>>() == 632);
+    assert!(offset_of!(Vars<f32>, codes) == 4 * 65 && offset_of!(Vars<f64>, codes) == 8 * 65);
+    assert!(offset_of!(Vars<f32>, commands) == 4 * 85 && offset_of!(Vars<f64>, commands) == 8 * 65 + 80);
+};

@@ -9,6 +9,7 @@
 #![allow(clippy::panic, clippy::modulo_arithmetic, clippy::integer_division)]
 
 mod behaviour;
+mod damage;
 mod memory;
 mod parameters;
 mod period;

@@ -168,7 +168,8 @@ fn names_are_those_of_the_variables() {
     };
     names(1, controller_capi::plc::vars::Settings::<f64>::NAMES);
     names(101, controller_capi::plc::vars::Choices::NAMES);
-    for unknown in [0, -1, 47, 100, 113, i32::MIN, i32::MAX] {
+    assert_eq!(name(0), c"no parameter");
+    for unknown in [-1, 47, 100, 113, i32::MIN, i32::MAX] {
         assert_eq!(name(unknown), c"unknown parameter");
     }
 }
