@@ -1,29 +1,10 @@
 /*
  * The layout of the structures, the same on every machine and for every option about enumerations; 32-bit x86 aligns double
- * to 4 bytes, which changes no offset. One line a field: offset and size in bytes. `controller-capi/tests/header.rs`
+ * to 4 bytes, which changes no offset. One line a field: offset and size in bytes. `controller-capi/tests/header`
  * compares the lines with Rust's structures.
  */
-#include <stddef.h>
-
 #include "ctl.h"
-
-#if defined(__cplusplus)
-#define ASSERT(condition) static_assert(condition, #condition)
-#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
-#define ASSERT(condition) _Static_assert(condition, #condition)
-#else
-#define GLUE_(a, b) a##b
-#define GLUE(a, b) GLUE_(a, b)
-#define ASSERT(condition) extern char GLUE(assertion_, __LINE__)[(condition) ? 1 : -1]
-#endif
-
-#define AT(type, field, offset, size) ASSERT(offsetof(type, field) == offset && sizeof(((type *)0)->field) == size)
-#define ALL(type, size, align)                                                 \
-    struct type##_behind_a_byte {                                              \
-        char byte;                                                             \
-        type it;                                                               \
-    };                                                                         \
-    ASSERT(sizeof(type) == size && offsetof(struct type##_behind_a_byte, it) <= align)
+#include "assert_layout.h"
 
 ALL(ctl_config, 608, 8);
 AT(ctl_config, struct_size, 0, 4);

@@ -1,8 +1,6 @@
-//! The header and the library say the same: every function, constant, structure and field, and the table of offsets that C
-//! compilers assert (`tests/c/layout.c`). What is written here for C is made from the Rust types.
+//! `ctl.h`: every function, constant, structure and field, and the table of offsets in `tests/c/layout.c`.
 
-#![allow(clippy::expect_used, clippy::string_slice, clippy::unwrap_used, clippy::indexing_slicing)]
-
+use crate::{Spelled, code, constants, prototypes, prototypes_of, size_of_field, text, words};
 use controller_capi::config::MAX_FACTORS;
 use controller_capi::fault::choice;
 use controller_capi::io::mode;
@@ -11,64 +9,8 @@ use controller_core::{Action, Mode, Param, Quality, Reason, Status};
 use std::collections::BTreeMap;
 use std::ffi::{c_char, c_void};
 
-const HEADER: &str = include_str!("../include/ctl.h");
-const LAYOUT: &str = include_str!("../../tests/c/layout.c");
-
-/// The header without comments, its lines joined where they go on.
-fn code() -> String {
-    let mut text = HEADER.replace("\\\n", " ");
-    while let Some((before, rest)) = text.split_once("/*") {
-        let (_, after) = rest.split_once("*/").expect("a comment ends");
-        text = format!("{before}{after}");
-    }
-    text
-}
-
-fn words(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// A Rust type as C writes it, up to the name that follows.
-trait Spelled {
-    const C: &'static str;
-}
-
-macro_rules! spelled {
-    ($($rust:ty => $c:literal;)*) => { $(impl Spelled for $rust { const C: &'static str = $c; })* };
-}
-
-spelled! {
-    u32 => "uint32_t ";
-    i32 => "int32_t ";
-    usize => "size_t ";
-    f32 => "float ";
-    f64 => "double ";
-    *const c_char => "const char *";
-    *mut c_void => "void *";
-    *const c_void => "const void *";
-    *mut u32 => "uint32_t *";
-    *const u32 => "const uint32_t *";
-    *mut usize => "size_t *";
-    *mut Config => "ctl_config *";
-    *const Config => "const ctl_config *";
-    *mut Faults => "ctl_faults *";
-    *const Input<f32> => "const ctl_f32_input *";
-    *mut Output<f32> => "ctl_f32_output *";
-    *const Input<f64> => "const ctl_f64_input *";
-    *mut Output<f64> => "ctl_f64_output *";
-}
-
-/// Prototypes, each of which the compiler compares with the function.
-macro_rules! prototypes {
-    ($(fn $name:ident($($arg:ident: $type:ty),*) -> $result:ty;)*) => {
-        vec![$({
-            let _: unsafe extern "C" fn($($type),*) -> $result = $name;
-            let args: &[String] = &[$(format!("{}{}", <$type>::C, stringify!($arg))),*];
-            let args = if args.is_empty() { "void".to_string() } else { args.join(", ") };
-            format!("{}{}({args})", <$result>::C, stringify!($name))
-        }),*]
-    };
-}
+const HEADER: &str = include_str!("../../include/ctl.h");
+const LAYOUT: &str = include_str!("../../../tests/c/layout.c");
 
 macro_rules! variant {
     ($real:ty: $size:ident $without:ident $align:ident $delay:ident $check:ident $init:ident $settle:ident $set_mode:ident
@@ -112,32 +54,12 @@ fn every_function() {
         ctl_f64_settle ctl_f64_set_mode ctl_f64_step ctl_f64_adopt ctl_f64_advance ctl_f64_read ctl_f64_snapshot_words
         ctl_f64_save ctl_f64_restore
     });
-    let code = code();
-    let of_the_header: Vec<String> = code
-        .split(';')
-        .filter_map(|statement| statement.trim().lines().last())
-        .filter(|line| line.contains(" ctl_") || line.contains("*ctl_"))
-        .filter(|line| line.ends_with(')'))
-        .map(words)
-        .collect();
-    assert_eq!(of_the_header, ours);
+    assert_eq!(prototypes_of(HEADER), ours);
     // Every exported function is one of these: `exports.rs` has no other.
-    let exports = include_str!("../src/exports.rs");
+    let exports = include_str!("../../src/exports.rs");
     assert_eq!(exports.matches("no_mangle").count(), 5 + 15);
     // Runtimes give names with these endings a meaning of their own.
     assert!(ours.iter().all(|p| !p.contains("_setup(") && !p.contains("_loop(")));
-}
-
-/// Every `#define CTL_... number` of the header.
-fn constants() -> BTreeMap<String, i64> {
-    let code = code();
-    let defines = code.lines().filter_map(|line| line.strip_prefix("#define "));
-    let pairs = defines.filter_map(|line| line.split_once(' ')).filter(|(name, _)| !name.contains('('));
-    let number = |text: &str| {
-        let digits = text.trim().trim_end_matches('u');
-        digits.strip_prefix("0x").map_or_else(|| digits.parse(), |hex| i64::from_str_radix(hex, 16))
-    };
-    pairs.map(|(name, text)| (name.to_string(), number(text).expect(text))).collect()
 }
 
 /// `AlarmHiHi` or `alarm hi hi` as `ALARM_HI_HI`.
@@ -175,7 +97,12 @@ fn every_constant() {
         E::SnapshotShape,
         E::SnapshotChecksum,
         E::SnapshotInvalid,
+        E::Damaged,
     ];
+    assert!(
+        text(ctl_error_text(errors.len() as i32 + 1)).starts_with("unknown"),
+        "an error is not in the list"
+    );
     for error in errors {
         add(&format!("ERROR_{}", shouted(&format!("{error:?}"))), error as i64);
     }
@@ -297,7 +224,7 @@ fn every_constant() {
     let count = ours.len();
     let ours: BTreeMap<String, i64> = ours.into_iter().collect();
     assert_eq!(ours.len(), count, "no name twice");
-    assert_eq!(constants(), ours);
+    assert_eq!(constants(HEADER), ours);
 }
 
 /// The table of one structure, as `layout.c` has it, and the names of its fields.
@@ -315,10 +242,6 @@ macro_rules! layout {
         assert_eq!(at, size_of::<$rust>(), "no field of {} is missing", $c);
         (lines, vec![$(stringify!($field)),*])
     }};
-}
-
-fn size_of_field<S, F>(_: impl Fn(&S) -> &F) -> usize {
-    size_of::<F>()
 }
 
 macro_rules! input {
@@ -360,7 +283,7 @@ fn every_field() {
     assert_eq!(table.trim_end(), expected.trim_end(), "tests/c/layout.c must end with this:\n{expected}");
 
     // Every field of the header is in the table, in this order; a structure is one flat list of them.
-    let code = code();
+    let code = code(HEADER);
     let body = |after: &str, until: &str| {
         let (_, rest) = code.split_once(after).expect(after);
         let (body, _) = rest.split_once(until).expect(until);
@@ -379,11 +302,7 @@ fn every_field() {
 
 #[test]
 fn every_text() {
-    let text = |pointer: *const c_char| {
-        // SAFETY: the functions give text that lives as long as the program.
-        unsafe { std::ffi::CStr::from_ptr(pointer) }.to_str().unwrap().to_string()
-    };
-    for (name, number) in constants() {
+    for (name, number) in constants(HEADER) {
         let number = i32::try_from(number).unwrap();
         if name.starts_with("CTL_ERROR_") {
             assert!(!text(ctl_error_text(number)).starts_with("unknown"), "{name}");
@@ -407,7 +326,7 @@ fn every_text() {
 #[test]
 fn the_macros_of_sizes_are_the_functions() {
     // The C tests evaluate the macros themselves; here the numbers in them.
-    let line = |name: &str| words(code().lines().find(|l| l.contains(name)).expect(name));
+    let line = |name: &str| words(code(HEADER).lines().find(|l| l.contains(name)).expect(name));
     let base = |name: &str| -> usize {
         let line = line(name);
         let (_, rest) = line.split_once("(delay) (").expect(&line);
