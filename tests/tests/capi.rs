@@ -1,7 +1,9 @@
-//! The C interface from C: the same bits as the core, every error, memory that moves, snapshots, layout, clean memory.
+//! The C interface from C: the same bits as the core, every error, memory that moves, snapshots, layout, clean memory, damaged memory.
 //!
 //! The programs are in `tests/c`; a compiler or a tool that is missing is named, and its part did not run.
 
+#[path = "capi/archive.rs"]
+mod archive;
 #[path = "capi/cases.rs"]
 mod cases;
 #[path = "capi/script.rs"]
@@ -11,12 +13,20 @@ mod tools;
 
 use controller_core::Real;
 use script::Script;
+use std::path::PathBuf;
 use tools::{Build, Tool, available, folder, root};
 
 const VARIANTS: [&str; 2] = ["f32", "f64"];
 
 /// The programs that check by themselves.
 const PROGRAMS: [&str; 3] = ["errors", "snapshot", "behaviour"];
+
+/// The programs that damage memory, bit by bit in steps of so many bits.
+const DAMAGE: [&str; 2] = ["damage", "damage_block"];
+
+fn every_nth_bit(n: u32) -> [PathBuf; 1] {
+    [n.to_string().into()]
+}
 
 /// Two scripts in the number type `T`, in files.
 fn scripts<T: Real>(seed: u64, samples: usize) -> ([std::path::PathBuf; 2], String) {
@@ -91,6 +101,10 @@ fn outputs_are_those_of_the_core_on_an_emulated_cortex_m() {
                 for program in PROGRAMS {
                     tools::passes(&tools::emulated(&tools::image(program, variant, target, flags), &[]));
                 }
+                for program in DAMAGE {
+                    let image = tools::image(program, variant, target, flags);
+                    tools::passes(&tools::emulated(&image, &every_nth_bit(53)));
+                }
             }
         }
     }
@@ -135,6 +149,9 @@ fn clean_with_sanitizers() {
             for program in PROGRAMS {
                 tools::passes(&tools::run(&build.program(program, variant), &[], &[]));
             }
+            for program in DAMAGE {
+                tools::passes(&tools::run(&build.program(program, variant), &[], &every_nth_bit(1)));
+            }
         }
     }
 }
@@ -153,15 +170,19 @@ fn clean_under_valgrind() {
             for program in PROGRAMS {
                 tools::passes(&tools::run(&build.program(program, variant), &valgrind, &[]));
             }
+            for program in DAMAGE {
+                tools::passes(&tools::run(&build.program(program, variant), &valgrind, &every_nth_bit(53)));
+            }
         }
     }
 }
 
 #[test]
-fn header_and_layout_hold_for_every_standard() {
+fn headers_and_layouts_hold_for_every_standard() {
     for compiler in available(&[Tool::Gcc, Tool::Clang]) {
         for enums in ["-fshort-enums", "-fno-short-enums"] {
-            for (language, standards) in [("c", ["c99", "c11", "c17"]), ("c++", ["c++11", "c++17", "c++20"])]
+            for (language, standards) in
+                [("c", &["c99", "c11", "c17"][..]), ("c++", &["c++11", "c++14", "c++17", "c++20"])]
             {
                 for standard in standards {
                     tools::checks(compiler, &["-x", language, &format!("-std={standard}"), enums]);

@@ -4,6 +4,8 @@
 //! variables, each with a value and flags; the macros that it defines around a pragma; and the pragma as it stands. What
 //! that program gives is compared, bit for bit, with the block called from Rust.
 
+#[path = "capi/archive.rs"]
+mod archive;
 #[path = "function_block/generated.rs"]
 mod generated;
 #[path = "function_block/program.rs"]

@@ -1,8 +1,8 @@
 //! Compilers and tools: which are there, building a program against the archive, running it.
 
+use crate::archive::archive;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::Mutex;
 use std::{fs, io::Write};
 
 /// A program that this machine may lack.
@@ -55,26 +55,6 @@ pub(crate) fn folder() -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capi");
     fs::create_dir_all(&path).expect("the folder can be created");
     path
-}
-
-/// The archive as a C program links it, for this machine or for a target. It has a target folder of its own, since cargo
-/// holds the other one now.
-fn archive(target: Option<&str>) -> PathBuf {
-    static BUILDING: Mutex<()> = Mutex::new(());
-    // One at a time; after a failure the others fail by themselves.
-    let _building = BUILDING.lock();
-    let folder = folder().join("target");
-    let mut command = Command::new(env!("CARGO"));
-    command
-        .args(["build", "--quiet", "-p", "controller-capi-staticlib", "--profile", "embedded"])
-        .arg("--target-dir")
-        .arg(&folder)
-        .current_dir(root());
-    if let Some(target) = target {
-        command.args(["--target", target]);
-    }
-    assert!(command.status().is_ok_and(|status| status.success()), "the archive can be built");
-    folder.join(target.unwrap_or_default()).join("embedded/libctl.a")
 }
 
 /// Whether the compiler in use has the library for a target.
@@ -155,12 +135,14 @@ pub(crate) fn image(name: &str, variant: &str, target: &str, flags: &[&str]) -> 
     program
 }
 
-/// The static assertions of the layout hold, and the header has no warning.
+/// The static assertions of the layouts hold, and the headers have no warning.
 pub(crate) fn checks(compiler: Tool, flags: &[&str]) {
-    let mut command = Build::new(compiler, flags).command();
-    let output = command.arg("-fsyntax-only").arg(root().join("tests/c/layout.c")).output();
-    let output = output.expect("the compiler starts");
-    assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+    for source in ["tests/c/layout.c", "tests/c/layout_fb.c"] {
+        let mut command = Build::new(compiler, flags).command();
+        let output = command.arg("-fsyntax-only").arg(root().join(source)).output();
+        let output = output.expect("the compiler starts");
+        assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+    }
 }
 
 /// What an image prints on the emulated board.

@@ -1,5 +1,6 @@
 //! Compilers, the archive, programs.
 
+use crate::archive::archive;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -78,23 +79,6 @@ pub(crate) fn write(name: &str, text: &str) -> PathBuf {
         fs::write(&path, text).expect("the source can be written");
     }
     path
-}
-
-/// The archive as a C program links it, for this machine or for a target, in a target folder of its own, since cargo holds
-/// the other one now.
-fn archive(target: Option<&str>) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capi/target");
-    let mut command = Command::new(env!("CARGO"));
-    command
-        .args(["build", "--quiet", "-p", "controller-capi-staticlib", "--profile", "embedded"])
-        .arg("--target-dir")
-        .arg(&folder)
-        .current_dir(root());
-    if let Some(target) = target {
-        command.args(["--target", target]);
-    }
-    assert!(command.status().is_ok_and(|status| status.success()), "the archive can be built");
-    folder.join(target.unwrap_or_default()).join("embedded/libctl.a")
 }
 
 /// The emulated board, a Cortex-M4F.
