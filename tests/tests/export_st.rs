@@ -6,6 +6,8 @@
 
 #[path = "export_st/anew.rs"]
 mod anew;
+#[path = "capi/archive.rs"]
+mod archive;
 #[path = "export_st/bits.rs"]
 mod bits;
 #[path = "export_st/compiled.rs"]
@@ -16,6 +18,8 @@ mod drive;
 mod fixtures;
 #[path = "export_st/header.rs"]
 mod header;
+#[path = "export_st/linked.rs"]
+mod linked;
 #[path = "export_st/loops.rs"]
 mod loops;
 #[path = "export_st/mutations.rs"]
