@@ -194,7 +194,9 @@ impl Machine {
         let all: Vec<&str> = functions.iter().map(String::as_str).collect();
         let object = folder.join(OBJECT);
         self.object(root, &archive, &all, &object)?;
-        let exported = exported(&symbols(root, &object)?);
+        let listed = symbols(root, &object)?;
+        no_panic(&object, &listed)?;
+        let exported = exported(&listed);
         let mut expected = functions.to_vec();
         expected.sort_unstable();
         if exported != expected {
@@ -203,7 +205,7 @@ impl Machine {
                 object.display()
             ));
         }
-        self.example(root, &archive, &folder)?;
+        self.example(root, &archive, &all, &folder)?;
         let part = |file: &str, wanted: &dyn Fn(&str) -> bool| {
             let names: Vec<&str> = all.iter().copied().filter(|name| wanted(name)).collect();
             let object = folder.join(file);
@@ -231,8 +233,8 @@ impl Machine {
             .run()
     }
 
-    /// Links the example as a program; no symbol of a panic may be left.
-    fn example(&self, root: &Path, archive: &Path, folder: &Path) -> Outcome {
+    /// Links the example and all functions as a program; no symbol of a panic may be left, and no function missing.
+    fn example(&self, root: &Path, archive: &Path, functions: &[&str], folder: &Path) -> Outcome {
         let image = folder.join("heater.elf");
         let board: &[&str] = if self.target == HOST {
             &[]
@@ -248,20 +250,33 @@ impl Machine {
         Cmd::new(self.gcc, root)
             .args(self.flags)
             .args(["-Os", "-Wl,--gc-sections", "-I", "controller-capi/include", EXAMPLE])
+            .args(functions.iter().map(|name| format!("-Wl,-u,{name}")))
             .args(board)
             .arg(archive)
             .arg("-o")
             .arg(&image)
             .run()?;
         let symbols = symbols(root, &image)?;
-        let panics: Vec<&str> =
-            symbols.lines().filter(|line| line.contains("panic") || line.contains("core3fmt")).collect();
-        if panics.is_empty() {
-            Ok(())
-        } else {
-            Err(format!("{} can panic:\n{}", image.display(), panics.join("\n")))
+        let defined = exported(&symbols);
+        if let Some(missing) = functions.iter().find(|name| !defined.iter().any(|symbol| symbol == *name)) {
+            return Err(format!("{missing} is not in {}", image.display()));
         }
+        no_panic(&image, &symbols)
     }
+}
+
+/// That nothing of a panic, or of the text of one, is in a file.
+fn no_panic(file: &Path, symbols: &str) -> Outcome {
+    let panics: Vec<&str> = symbols.lines().filter(|line| is_of_a_panic(line)).collect();
+    if panics.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("{} can panic:\n{}", file.display(), panics.join("\n")))
+    }
+}
+
+fn is_of_a_panic(line: &str) -> bool {
+    ["panic", "core3fmt", "unwrap_failed", "expect_failed", "_fail_"].iter().any(|part| line.contains(part))
 }
 
 fn symbols(root: &Path, file: &Path) -> Outcome<String> {
@@ -367,6 +382,19 @@ mod tests {
                      4: 0000     4 FUNC    LOCAL  DEFAULT    5 inner\n\
                      5: 0000     4 FUNC    WEAK   DEFAULT    5 ctl_a\n";
         assert_eq!(exported(text), ["ctl_a", "ctl_b"]);
+    }
+
+    #[test]
+    fn what_belongs_to_a_panic_is_known() {
+        for name in [
+            "_ZN4core9panicking5panic17h0E",
+            "_ZN4core3fmt9Formatter3pad17h0E",
+            "rust_panic",
+            "_RNvCs_4core6option13unwrap_failed",
+        ] {
+            assert!(is_of_a_panic(name), "{name}");
+        }
+        assert!(!is_of_a_panic("ctl_f32_step") && !is_of_a_panic("_ZN15controller_core4step17h0E"));
     }
 
     #[test]
