@@ -80,7 +80,7 @@ fn any_bits<T: Number>(compensator: i32, seed: u64) {
             let words = core::slice::from_raw_parts_mut(state.cast::<u32>(), 2 * count);
             let all = round % 2 == 0;
             for word in &mut words[8..] {
-                if all || chance.word() % 16 == 0 {
+                if all || chance.word().is_multiple_of(16) {
                     *word = chance.odd_word();
                 }
             }
@@ -94,7 +94,7 @@ fn any_bits<T: Number>(compensator: i32, seed: u64) {
                 y: T::from_f64(0.5),
                 mode: i32::try_from(chance.word() % 8).unwrap(),
                 quality: i32::try_from(chance.word() % 3).unwrap(),
-                compensator_off: i32::from(chance.word() % 4 == 0),
+                compensator_off: i32::from(chance.word().is_multiple_of(4)),
                 ..Input::default()
             };
             let mut output = Output::default();
