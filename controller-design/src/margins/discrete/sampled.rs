@@ -165,6 +165,36 @@ impl DiscreteLoop {
         Ok(self.margins_of(&self.stable()?))
     }
 
+    /// The [`margins`](Self::margins) of a stable loop, of another one its number of
+    /// [unstable poles](Self::unstable_poles), at the price of the margins.
+    ///
+    /// # Errors
+    /// A delay that is too many samples long to follow all its turns: whether the loop is stable is not known.
+    ///
+    /// ```
+    /// use controller_core::PidConfig;
+    /// use controller_design::margins::{DiscreteLaw, DiscreteLoop};
+    /// use controller_design::model::parse;
+    ///
+    /// // An integrator sampled every second under kp: the closed loop's pole is 1-kp.
+    /// let of = |kp: f64| {
+    ///     let law = DiscreteLaw::new(&PidConfig { kp, ..PidConfig::default() }, 1.0).expect("valid");
+    ///     DiscreteLoop::new(&parse("1/s").expect("a plant"), law, 0.0).expect("in range").margins_or_poles()
+    /// };
+    /// assert!(of(1.9).expect("known").is_ok());
+    /// assert_eq!(of(2.1).expect("known"), Err(1));
+    /// ```
+    pub fn margins_or_poles(&self) -> Result<Result<Margins, usize>, Refusal> {
+        let sweep = Sweep::of(self);
+        if sweep.is_cut {
+            return Err(TOO_MANY_TURNS);
+        }
+        Ok(match sweep.unstable_poles() {
+            0 => Ok(self.margins_of(&sweep)),
+            poles => Err(poles),
+        })
+    }
+
     /// [`margins`](Self::margins) and [`noise`](Self::noise) at the price of one.
     ///
     /// # Errors
