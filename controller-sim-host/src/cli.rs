@@ -19,11 +19,13 @@ mod quoting;
 mod record;
 mod reproduce;
 mod run;
+mod sample;
 mod scenarios;
 mod step_log;
 mod tune;
 mod usage;
 mod wish;
+mod worst;
 
 use crate::output::{Problem, Trouble, error_json, render_all};
 use arguments::{Arguments, Command, DemoArguments};
@@ -108,7 +110,7 @@ pub fn main() -> ExitCode {
         Some(Command::Assess(arguments)) => assess::run(&arguments, json, &command),
         Some(Command::Identify(arguments)) => identify::run(&arguments, json, &command),
         Some(Command::Export(arguments)) => export::run(&arguments, json),
-        Some(Command::Batch(arguments)) => batch::run(&arguments, json),
+        Some(Command::Batch(arguments)) => batch::run(&arguments, json, &command),
         Some(Command::Reproduce(arguments)) => reproduce::run(&arguments, json),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),

@@ -65,16 +65,8 @@ impl Analysis {
 /// A cascade, whose outer controller does not see the plant alone; a plant, model or law that has no responses.
 pub fn analyse(scenario: &Scenario, index: usize) -> Result<Analysis, Reason> {
     let spec = scenario.controllers.get(index).ok_or("there is no such controller")?;
-    if spec.secondary.is_some() {
-        return Err("a cascade is not analysed: analyse its inner loop as a scenario of its own".to_owned());
-    }
     let (ts, latency, pid) = (scenario.ts, scenario.latency, &spec.config.pid);
-    let law = match (&spec.adrc, spec.compensator_config(latency)) {
-        (Some(adrc), _) => DiscreteLaw::adrc(adrc, ts),
-        (None, Some(config)) => DiscreteLaw::with_compensator(pid, &config, ts),
-        (None, None) => DiscreteLaw::new(pid, ts),
-    };
-    let law = law.map_err(|faults| faults.to_string())?;
+    let law = law(scenario, index)?;
     let refused = |refusal: Refusal| refusal.to_string();
     let sampled = DiscreteLoop::new(&scenario.plant, law, latency).map_err(refused)?;
     let design = match &spec.adrc {
@@ -102,4 +94,22 @@ pub fn analyse(scenario: &Scenario, index: usize) -> Result<Analysis, Reason> {
     };
     analysis.warnings = warnings::of(&analysis, pid);
     Ok(analysis)
+}
+
+/// The sampled law of the controller `index` of `scenario`, in double precision and without limits.
+///
+/// # Errors
+/// A cascade, whose outer controller does not see the plant alone; a law that cannot be built.
+pub fn law(scenario: &Scenario, index: usize) -> Result<DiscreteLaw, Reason> {
+    let spec = scenario.controllers.get(index).ok_or("there is no such controller")?;
+    if spec.secondary.is_some() {
+        return Err("a cascade is not analysed: analyse its inner loop as a scenario of its own".to_owned());
+    }
+    let (ts, pid) = (scenario.ts, &spec.config.pid);
+    let law = match (&spec.adrc, spec.compensator_config(scenario.latency)) {
+        (Some(adrc), _) => DiscreteLaw::adrc(adrc, ts),
+        (None, Some(config)) => DiscreteLaw::with_compensator(pid, &config, ts),
+        (None, None) => DiscreteLaw::new(pid, ts),
+    };
+    law.map_err(|faults| faults.to_string())
 }

@@ -28,20 +28,24 @@ pub(super) fn digest(study: &Study) -> String {
         list.iter().for_each(|x| add(&format!("{x:?}")));
     }
     add(&study.ts.map_or(String::new(), |ts| format!("{ts:?}")));
-    format!("{:016x}", hash.0)
+    hash.text()
 }
 
-struct Fnv(u64);
+pub(super) struct Fnv(u64);
 
 impl Fnv {
-    const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    fn add(&mut self, bytes: &[u8]) {
+    pub(super) fn add(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
+    }
+
+    pub(super) fn text(&self) -> String {
+        format!("{:016x}", self.0)
     }
 }
 

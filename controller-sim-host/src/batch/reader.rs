@@ -1,6 +1,6 @@
 //! Rows from files.
 
-use super::row::{COLUMNS, Row, show};
+use super::layout::{Cells, Layout, show};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use parquet::record::reader::RowIter;
@@ -15,7 +15,12 @@ const LONGEST: u64 = 1 << 20;
 const MAGIC: &[u8; 4] = b"PAR1";
 
 /// Reads the rows of a file, one after the other; memory does not grow with the file.
-pub enum RowReader {
+pub struct RowReader {
+    layout: Option<Layout>,
+    from: Source,
+}
+
+enum Source {
     /// A table.
     Csv {
         /// The rest of it.
@@ -29,10 +34,7 @@ pub enum RowReader {
 
 impl std::fmt::Debug for RowReader {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Csv { .. } => "RowReader::Csv",
-            Self::Parquet(_) => "RowReader::Parquet",
-        })
+        f.debug_struct("RowReader").field("layout", &self.layout).finish_non_exhaustive()
     }
 }
 
@@ -53,32 +55,39 @@ impl RowReader {
         if first == MAGIC {
             let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
             let schema = reader.metadata().file_metadata().schema_descr();
-            let names = schema.columns().iter().map(|column| column.name().to_owned());
-            if !names.eq(COLUMNS.iter().map(|column| column.name.to_owned())) {
-                return Err("it has not the columns of a study".to_owned());
-            }
-            return Ok(Self::Parquet(RowIter::from_file_into(Box::new(reader))));
+            let names: Vec<String> = schema.columns().iter().map(|column| column.name().to_owned()).collect();
+            let layout = Layout::named(&names).ok_or("it has not the columns of a study")?;
+            let rows = RowIter::from_file_into(Box::new(reader));
+            return Ok(Self { layout: Some(layout), from: Source::Parquet(rows) });
         }
-        let mut reader = Self::Csv { from: BufReader::new(file), complete: 0 };
-        match reader.line()? {
-            Some(line) if line == head() => Ok(reader),
-            Some(_) => Err("its first line does not name the columns of a study".to_owned()),
-            None => Ok(reader),
+        let from = Source::Csv { from: BufReader::new(file), complete: 0 };
+        let mut reader = Self { layout: None, from };
+        if let Some(line) = reader.line()? {
+            let names: Vec<String> = line.split(',').map(str::to_owned).collect();
+            let layout = Layout::named(&names);
+            reader.layout = Some(layout.ok_or("its first line does not name the columns of a study")?);
         }
+        Ok(reader)
+    }
+
+    /// The columns; `None`: the first line is not complete.
+    #[must_use]
+    pub fn layout(&self) -> Option<&Layout> {
+        self.layout.as_ref()
     }
 
     /// Bytes of a table up to the end of its last complete row.
     #[must_use]
     pub fn complete(&self) -> u64 {
-        match self {
-            Self::Csv { complete, .. } => *complete,
-            Self::Parquet(_) => 0,
+        match &self.from {
+            Source::Csv { complete, .. } => *complete,
+            Source::Parquet(_) => 0,
         }
     }
 
     /// The next complete line; a last one without its end is none.
     fn line(&mut self) -> Result<Option<String>, Wrong> {
-        let Self::Csv { from, complete } = self else { return Ok(None) };
+        let Source::Csv { from, complete } = &mut self.from else { return Ok(None) };
         let mut bytes = Vec::new();
         from.take(LONGEST).read_until(b'\n', &mut bytes).map_err(|error| error.to_string())?;
         if bytes.last() != Some(&b'\n') {
@@ -97,14 +106,15 @@ impl RowReader {
     ///
     /// # Errors
     /// What the system reports; a line that is no row.
-    pub fn next_row(&mut self) -> Result<Option<Row>, Wrong> {
-        if let Self::Parquet(rows) = self {
+    pub fn next_row(&mut self) -> Result<Option<Cells>, Wrong> {
+        if let Source::Parquet(rows) = &mut self.from {
             return match rows.next() {
                 None => Ok(None),
                 Some(Err(error)) => Err(error.to_string()),
                 Some(Ok(row)) => {
                     let cells = row.get_column_iter().map(|(_, field)| cell(field)).collect();
-                    Row::read(cells).map(Some).ok_or_else(|| "it has rows of another kind".to_owned())
+                    let row = self.layout.as_ref().and_then(|layout| layout.read(cells));
+                    row.map(Some).ok_or_else(|| "it has rows of another kind".to_owned())
                 }
             };
         }
@@ -112,17 +122,13 @@ impl RowReader {
         let mut parser =
             csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(line.as_bytes());
         let record = parser.records().next().and_then(Result::ok);
-        let row = record.and_then(|record| Row::read(record.iter().map(str::to_owned).collect()));
+        let cells = record.map(|record| record.iter().map(str::to_owned).collect());
+        let row = self.layout.as_ref().zip(cells).and_then(|(layout, cells)| layout.read(cells));
         row.map(Some).ok_or_else(|| {
             let start: String = line.chars().take(40).collect();
             format!("a line of it is no row: {start}")
         })
     }
-}
-
-/// The line with the names of the columns.
-pub(super) fn head() -> String {
-    COLUMNS.map(|column| column.name).join(",")
 }
 
 fn cell(field: &Field) -> String {

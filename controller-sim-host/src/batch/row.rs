@@ -1,41 +1,22 @@
 //! The row of one rule on one plant.
 
+use super::layout::{Cells, Column, Kind};
 use super::study::Point;
 use controller_design::design::Law;
 use controller_design::margins::Margins;
 
-/// What a column holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A text that every row has.
-    Text,
-    /// A number that a row may not have.
-    Number,
-    /// The number of the row.
-    Count,
-}
-
-/// A column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Column {
-    /// Its name, in files and in JSON.
-    pub name: &'static str,
-    /// What it holds.
-    pub kind: Kind,
-}
-
 const fn text(name: &'static str) -> Column {
-    Column { name, kind: Kind::Text }
+    Column::fixed(name, Kind::Text)
 }
 
 const fn number(name: &'static str) -> Column {
-    Column { name, kind: Kind::Number }
+    Column::fixed(name, Kind::Number)
 }
 
 /// The columns, in order.
-pub const COLUMNS: [Column; 39] = [
+pub static COLUMNS: [Column; 39] = [
     text("study"),
-    Column { name: "row", kind: Kind::Count },
+    Column::fixed("row", Kind::Count),
     text("process"),
     text("family"),
     text("method"),
@@ -75,7 +56,6 @@ pub const COLUMNS: [Column; 39] = [
     number("load_tv"),
 ];
 
-const ROW: usize = 1;
 const PROCESS: usize = 2;
 const METHOD: usize = 4;
 const MS0: usize = 5;
@@ -114,104 +94,99 @@ impl Status {
     }
 }
 
+/// As they stand in files.
+pub(super) const STATUSES: [&str; 3] = [Status::Ok.name(), Status::Refused.name(), Status::Failed.name()];
+
 /// Indices of one response in the order of the columns: IE, IAE, ISE, ITAE, largest error, TV.
 pub(super) type Numbers = [f64; 6];
 
-/// A row as it stands in a file: its cells are texts, numbers with all their digits.
+/// The row of one rule on one plant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Row {
-    cells: Vec<String>,
+    cells: Cells,
+}
+
+impl AsRef<Cells> for Row {
+    fn as_ref(&self) -> &Cells {
+        &self.cells
+    }
+}
+
+impl From<Cells> for Row {
+    fn from(cells: Cells) -> Self {
+        Self { cells }
+    }
 }
 
 impl Row {
     /// The row `number` (from 1) of the study, with nothing in it yet.
     pub(super) fn new(study: &str, number: usize, process: (&str, &str), point: Point) -> Self {
-        let mut row = Self { cells: vec![String::new(); COLUMNS.len()] };
-        for (i, cell) in [study, "", process.0, process.1, point.method.name()].into_iter().enumerate() {
-            cell.clone_into(&mut row.cells[i]);
+        let mut cells = Cells::new(study, number, COLUMNS.len());
+        for (i, cell) in [process.0, process.1, point.method.name()].into_iter().enumerate() {
+            cell.clone_into(&mut cells.0[PROCESS + i]);
         }
-        row.cells[ROW] = number.to_string();
-        row.put(MS0, [point.ms, point.noise_ratio]);
-        row.cells[STATUS] = Status::Ok.name().to_owned();
-        row
-    }
-
-    /// The row of a file; `None` when it is none.
-    pub(super) fn read(cells: Vec<String>) -> Option<Self> {
-        let row = Self { cells };
-        let is_whole = row.cells.len() == COLUMNS.len()
-            && row.cells[ROW].parse::<usize>().is_ok_and(|number| number > 0)
-            && Status::named(&row.cells[STATUS]).is_some()
-            && COLUMNS.iter().zip(&row.cells).all(|(column, cell)| {
-                column.kind != Kind::Number || cell.is_empty() || cell.parse::<f64>().is_ok()
-            });
-        is_whole.then_some(row)
+        cells.put(MS0, [point.ms, point.noise_ratio]);
+        cells.0[STATUS] = Status::Ok.name().to_owned();
+        Self { cells }
     }
 
     /// All cells, in the order of [`COLUMNS`].
     #[must_use]
     pub fn cells(&self) -> &[String] {
-        &self.cells
-    }
-
-    /// Which study it is of.
-    #[must_use]
-    pub fn study(&self) -> &str {
-        &self.cells[0]
+        self.cells.all()
     }
 
     /// Its number, from 1.
     #[must_use]
     pub fn number(&self) -> usize {
-        self.cells[ROW].parse().unwrap_or(0)
+        self.cells.number()
     }
 
     /// The name of the process.
     #[must_use]
     pub fn process(&self) -> &str {
-        &self.cells[PROCESS]
+        &self.cells.0[PROCESS]
     }
 
     /// Method, maximum sensitivity and noise ratio as texts.
     #[must_use]
     pub fn point(&self) -> [&str; 3] {
-        [METHOD, MS0, MS0 + 1].map(|i| &*self.cells[i])
+        [METHOD, MS0, MS0 + 1].map(|i| &*self.cells.0[i])
     }
 
     /// What became of it.
     #[must_use]
     pub fn status(&self) -> Status {
-        Status::named(&self.cells[STATUS]).unwrap_or(Status::Failed)
+        Status::named(&self.cells.0[STATUS]).unwrap_or(Status::Failed)
     }
 
     /// Why it is not ok; empty when it is.
     #[must_use]
     pub fn reason(&self) -> &str {
-        &self.cells[STATUS + 1]
+        &self.cells.0[STATUS + 1]
     }
 
     /// IAE, ISE and ITAE after a load, when it has them.
     #[must_use]
     pub fn load(&self) -> Option<[f64; 3]> {
-        let at = |i: usize| self.cells[i].parse().ok();
+        let at = |i: usize| self.cells.0[i].parse().ok();
         Some([at(LOAD + 1)?, at(LOAD + 2)?, at(LOAD + 3)?])
     }
 
     /// Its maximum sensitivity, when it has one.
     #[must_use]
     pub fn ms(&self) -> Option<f64> {
-        self.cells[MARGINS].parse().ok()
+        self.cells.0[MARGINS].parse().ok()
     }
 
     pub(super) fn end(&mut self, status: Status, reason: &str) {
-        status.name().clone_into(&mut self.cells[STATUS]);
-        // A row is a line.
-        self.cells[STATUS + 1] = reason.replace(['\n', '\r'], " ");
+        status.name().clone_into(&mut self.cells.0[STATUS]);
+        self.cells.put_reason(STATUS + 1, reason);
     }
 
     pub(super) fn put_loop(&mut self, name: &str, ts: f64) {
-        name.clone_into(&mut self.cells[LOOP]);
-        self.put(LOOP + 1, [Some(ts)]);
+        name.clone_into(&mut self.cells.0[LOOP]);
+        self.cells.put(LOOP + 1, [Some(ts)]);
     }
 
     pub(super) fn put_law(&mut self, law: &Law) {
@@ -228,46 +203,32 @@ impl Row {
                 (numbers[0], numbers[2], numbers[9]) = (Some(adrc.kp), Some(adrc.kd), Some(adrc.b0));
             }
         }
-        self.put(LAW, numbers);
+        self.cells.put(LAW, numbers);
     }
 
     pub(super) fn put_margins(&mut self, margins: &Margins, a_n: Option<f64>) {
         let Margins { ms, mt, gm, pm_deg, delay_margin, .. } = *margins;
-        self.put(MARGINS, [ms, mt, gm, pm_deg, delay_margin].map(Some));
-        self.put(A_N, [a_n]);
+        self.cells.put(MARGINS, [ms, mt, gm, pm_deg, delay_margin].map(Some));
+        self.cells.put(A_N, [a_n]);
     }
 
     pub(super) fn put_responses(&mut self, setpoint: Numbers, load: Numbers) {
-        self.put(SETPOINT, setpoint.map(Some));
-        self.put(LOAD, load.map(Some));
-    }
-
-    fn put<const N: usize>(&mut self, from: usize, numbers: [Option<f64>; N]) {
-        for (cell, number) in self.cells[from..].iter_mut().zip(numbers) {
-            *cell = number.map_or(String::new(), show);
-        }
-    }
-}
-
-/// A number with all its digits, such that reading and writing it again changes nothing.
-pub(super) fn show(x: f64) -> String {
-    // With an exponent where that is shorter: 0.01, 1.5, 1e-7, 1e300; whole numbers without `.0`.
-    let text = format!("{x:?}");
-    match text.strip_suffix(".0") {
-        Some(whole) => whole.to_owned(),
-        None => text,
+        self.cells.put(SETPOINT, setpoint.map(Some));
+        self.cells.put(LOAD, load.map(Some));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::batch::layout::Layout;
     use controller_design::design::Method;
 
     #[test]
     fn columns_are_where_they_are_written() {
-        let at = |i: usize| COLUMNS[i].name;
-        let places = [ROW, PROCESS, METHOD, MS0, STATUS, LOOP, LAW, MARGINS, A_N, SETPOINT, LOAD].map(at);
+        let at = |i: usize| COLUMNS[i].name.to_string();
+        let places =
+            [Cells::NUMBER, PROCESS, METHOD, MS0, STATUS, LOOP, LAW, MARGINS, A_N, SETPOINT, LOAD].map(at);
         let names = [
             "row",
             "process",
@@ -285,24 +246,15 @@ mod tests {
     }
 
     #[test]
-    fn numbers_come_back_as_they_were() {
-        for x in [0.0, 0.1, 1.2, -3.0, 1e-7, 1e300, 1.0 / 3.0, f64::INFINITY, 123456789.0, 5e-324] {
-            assert_eq!(show(x).parse::<f64>().map(show), Ok(show(x)));
-            assert_eq!(show(x).parse::<f64>().map(f64::to_bits), Ok(x.to_bits()));
-        }
-        assert_eq!([0.0, 2.0, 1.2, 1e-7].map(show), ["0", "2", "1.2", "1e-7"]);
-    }
-
-    #[test]
     fn half_a_row_is_none() {
         let point = Point { method: Method::PiMs, ms: Some(1.2), noise_ratio: None };
         let row = Row::new("s/1", 1, ("p", ""), point);
-        assert_eq!(Row::read(row.cells().to_vec()), Some(row.clone()));
+        assert_eq!(Layout::rules().read(row.cells().to_vec()), Some(row.cells.clone()));
         let mut cells = row.cells().to_vec();
         cells.pop();
-        assert_eq!(Row::read(cells), None);
+        assert_eq!(Layout::rules().read(cells), None);
         let mut cells = row.cells().to_vec();
         cells[MS0] = "1.2x".to_owned();
-        assert_eq!(Row::read(cells), None);
+        assert_eq!(Layout::rules().read(cells), None);
     }
 }

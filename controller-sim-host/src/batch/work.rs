@@ -1,4 +1,4 @@
-//! All rows of a study, on several threads, in their order.
+//! The rows of many items, plants mostly, on several threads, in their order.
 
 use super::evaluate::Evaluator;
 use super::row::Row;
@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::thread;
 
-/// Plants that may be done before the first one that is not: rows are held back in memory until their turn.
+/// Items that may be done before the first one that is not: rows are held back in memory until their turn.
 const AHEAD: usize = 64;
 
 /// It was stopped before the last row.
@@ -18,23 +18,23 @@ const AHEAD: usize = 64;
 pub struct Stopped;
 
 /// What the threads share.
-struct Queue {
-    /// The next plant to be taken.
+struct Queue<R> {
+    /// The next item to be taken.
     next: usize,
     /// The next one to be given out.
     due: usize,
     /// Those that are done before their turn.
-    done: BTreeMap<usize, Vec<Row>>,
+    done: BTreeMap<usize, Vec<R>>,
     ended: bool,
 }
 
 /// Ends the work when a thread panics: nobody waits for its rows.
-struct Guard<'a> {
-    queue: &'a Mutex<Queue>,
+struct Guard<'a, R> {
+    queue: &'a Mutex<Queue<R>>,
     changed: &'a Condvar,
 }
 
-impl Drop for Guard<'_> {
+impl<R> Drop for Guard<'_, R> {
     fn drop(&mut self) {
         if thread::panicking() {
             self.queue.lock().unwrap_or_else(PoisonError::into_inner).ended = true;
@@ -54,29 +54,46 @@ pub fn work<E: From<Stopped>>(
     jobs: usize,
     control: &Control,
     done: &AtomicU64,
-    mut take: impl FnMut(Vec<Row>) -> Result<(), E>,
+    take: impl FnMut(Vec<Row>) -> Result<(), E>,
 ) -> Result<(), E> {
-    let points = study.points();
-    if range.is_empty() || points.is_empty() {
+    let (points, name) = (study.points(), study.name());
+    in_order(range, points.len(), jobs, control, done, take, |index| {
+        let mut evaluator = Evaluator::new(study, &name, &study.plants[index]);
+        let points = &points;
+        move |i: usize| Some(evaluator.row(index * points.len() + i + 1, points[i]))
+    })
+}
+
+/// Makes the rows in `range`, from 0, of items that have `each` of them: `begin` takes the index of an item, what it gives
+/// makes the rows of it by their places, in their order, none when it was stopped. Otherwise as [`work`].
+pub(super) fn in_order<R: Send, E: From<Stopped>, F: FnMut(usize) -> Option<R>>(
+    range: Range<usize>,
+    each: usize,
+    jobs: usize,
+    control: &Control,
+    done: &AtomicU64,
+    mut take: impl FnMut(Vec<R>) -> Result<(), E>,
+    begin: impl Fn(usize) -> F + Sync,
+) -> Result<(), E> {
+    if range.is_empty() || each == 0 {
         return Ok(());
     }
-    let name = study.name();
-    let (first, last) = (range.start / points.len(), (range.end - 1) / points.len());
+    let (first, last) = (range.start / each, (range.end - 1) / each);
     let queue = Mutex::new(Queue { next: first, due: first, done: BTreeMap::new(), ended: false });
     let changed = Condvar::new();
     let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let rows_of = |index: usize| {
-        let mut evaluator = Evaluator::new(study, &name, &study.plants[index]);
+        let mut row = begin(index);
         let mut rows = Vec::new();
-        for (i, point) in points.iter().enumerate() {
-            let number = index * points.len() + i;
-            if !range.contains(&number) {
+        for i in 0..each {
+            if !range.contains(&(index * each + i)) {
                 continue;
             }
             if control.is_stopped() {
                 break;
             }
-            rows.push(evaluator.row(number + 1, *point));
+            let Some(made) = row(i) else { break };
+            rows.push(made);
             done.fetch_add(1, Ordering::Relaxed);
         }
         rows

@@ -1,12 +1,16 @@
 //! `batch`: many plants by many rules.
 
+use super::sample::SampleArguments;
 use super::{
     EXIT_REFUSED, EXIT_STOPPED, Failure, colours, examples, input, interrupt, print, progress, wish,
 };
 use crate::batch::list::{self, Format, List, NamedPlant};
+use crate::batch::sample::SampleSummary;
 use crate::batch::store::{self, Begun, RowFile};
-use crate::batch::{Row, Shard, Stopped, Study, Summary, work};
-use crate::output::{Batched, Problem, Trouble, batch_json, batch_table, is_same_file, render_all};
+use crate::batch::{About, Layout, Row, Shard, Stopped, Study, Summary, work};
+use crate::output::{
+    Batched, Problem, Sampled, Trouble, batch_json, batch_table, is_same_file, render_all,
+};
 use crate::scenario::SourceText;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Subcommand, ValueEnum, ValueHint};
@@ -75,6 +79,8 @@ pub(super) struct BatchArguments {
 
 #[derive(Debug, Subcommand)]
 enum BatchCommand {
+    /// Draws plants around that of a scenario and tells how robust its controllers are
+    Sample(SampleArguments),
     /// Joins the shards of a study, in any order, to the file that the whole study gives
     #[command(after_help = examples::BATCH_MERGE)]
     Merge(MergeArguments),
@@ -112,7 +118,7 @@ fn ratio(text: &str) -> Result<f64, String> {
     }
 }
 
-fn shard(text: &str) -> Result<Shard, String> {
+pub(super) fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/').map(|(index, count)| (index.trim().parse(), count.trim().parse()));
     match parts {
         Some((Ok(index), Ok(count))) if 1 <= index && index <= count => Ok(Shard { index, count }),
@@ -120,10 +126,12 @@ fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// `batch`.
-pub(super) fn run(arguments: &BatchArguments, json: bool) -> Result<(), Failure> {
-    if let Some(BatchCommand::Merge(merge)) = &arguments.command {
-        return join(merge, json);
+/// `batch`: `command` is what was typed.
+pub(super) fn run(arguments: &BatchArguments, json: bool, command: &str) -> Result<(), Failure> {
+    match &arguments.command {
+        Some(BatchCommand::Sample(sample)) => return super::sample::run(sample, json, command),
+        Some(BatchCommand::Merge(merge)) => return join(merge, json),
+        None => {}
     }
     if arguments.list {
         return Ok(print(&if json { batch134::json() } else { batch134::csv() })?);
@@ -142,18 +150,20 @@ pub(super) fn run(arguments: &BatchArguments, json: bool) -> Result<(), Failure>
         let message = format!("there are {total} rows, and {} parts", arguments.shard.count);
         return Err(Problem::new("usage", message).help("make fewer parts").into());
     }
+    let layout = Layout::rules();
     let mut summary = Summary::new(study.methods[0].name());
     let mut rows: Vec<Row> = Vec::new();
     let begun = match &arguments.out {
         None => None,
-        Some(path) if arguments.resume => Some(store::resume(path, &name, &range, |row| summary.add(row))?),
-        Some(path) => Some(store::create(path, arguments.force)?),
+        Some(path) if arguments.resume => Some(store::resume(path, (&name, &layout), &range, |row| {
+            summary.add(&Row::from(row.clone()));
+        })?),
+        Some(path) => Some(store::create(path, arguments.force, &layout)?),
     };
     let (mut file, kept) = begun.map_or((None, 0), |Begun { file, kept }| (file, kept));
     let control = interrupt::control();
     let done = AtomicU64::new(kept as u64);
-    let jobs = arguments.jobs.map(usize::from);
-    let jobs = jobs.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1);
+    let jobs = jobs(arguments.jobs);
     let counted = || done.load(Ordering::Relaxed);
     let result = progress::watch_count("rows", counted, range.len() as u64, arguments.quiet, || {
         work(&study, range.start + kept..range.end, jobs, control, &done, |made| -> Result<(), Ended> {
@@ -168,7 +178,9 @@ pub(super) fn run(arguments: &BatchArguments, json: bool) -> Result<(), Failure>
         })
     });
     match result {
-        Err(Ended::Stopped) => return Err(stopped(file.as_ref(), &summary, range.len())),
+        Err(Ended::Stopped) => {
+            return Err(stopped(file.as_ref(), summary.counts().iter().sum(), range.len()));
+        }
         Err(Ended::Failed(problem)) => return Err(Failure::internal(problem)),
         Ok(()) => {}
     }
@@ -183,8 +195,14 @@ pub(super) fn run(arguments: &BatchArguments, json: bool) -> Result<(), Failure>
     )
 }
 
+/// The number of threads: all processors if it is not given.
+pub(super) fn jobs(wanted: Option<u16>) -> usize {
+    let all = || std::thread::available_parallelism().ok().map(usize::from);
+    wanted.map(usize::from).or_else(all).unwrap_or(1)
+}
+
 /// Why the rows ended early.
-enum Ended {
+pub(super) enum Ended {
     Stopped,
     Failed(Problem),
 }
@@ -195,9 +213,8 @@ impl From<Stopped> for Ended {
     }
 }
 
-fn stopped(file: Option<&RowFile>, summary: &Summary, total: usize) -> Failure {
+pub(super) fn stopped(file: Option<&RowFile>, done: usize, total: usize) -> Failure {
     let Some(file) = file else { return Failure::stopped() };
-    let done: usize = summary.counts().iter().sum();
     let path = file.journal().display();
     let message = format!("stopped; {done} of {total} rows are in {path}; `--resume` goes on");
     Failure { troubles: vec![Problem::new("stopped", message).into()], code: EXIT_STOPPED }
@@ -279,9 +296,23 @@ fn format(path: &Path) -> Result<Format, Problem> {
 
 /// `batch merge`.
 fn join(arguments: &MergeArguments, json: bool) -> Result<(), Failure> {
-    let merged = store::merge(&arguments.files, &arguments.out, arguments.force);
-    let (study, summary, rows) =
+    let (mut rules, mut samples): (Option<Summary>, Option<SampleSummary>) = (None, None);
+    let merged =
+        store::merge(&arguments.files, &arguments.out, arguments.force, |layout, cells| {
+            match layout.about() {
+                About::Rules => {
+                    let row = Row::from(cells.clone());
+                    rules.get_or_insert_with(|| Summary::new(row.point()[0])).add(&row);
+                }
+                About::Samples => samples.get_or_insert_with(|| SampleSummary::new(layout)).add(cells),
+            }
+        });
+    let (study, rows) =
         merged.map_err(|problems| Failure::input(problems.into_iter().map(Trouble::from).collect()))?;
-    let out = arguments.out.display().to_string();
-    show(&Batched { study: &study, rows, kept: 0, summary: &summary, out: Some(&out), results: None }, json)
+    let (study, out) = (&*study, arguments.out.display().to_string());
+    if let Some(summary) = &samples {
+        return super::sample::show(&Sampled { out: Some(&out), ..Sampled::of(study, rows, summary) }, json);
+    }
+    let summary = &rules.unwrap_or_default();
+    show(&Batched { study, rows, kept: 0, summary, out: Some(&out), results: None }, json)
 }

@@ -125,6 +125,7 @@ Examples:
   controller-sim batch --processes my.csv --out rows.csv --resume   go on after an interruption
   controller-sim batch --processes my.csv --shard 2/4 --out part2.csv
   controller-sim batch merge part*.csv --out rows.csv
+  controller-sim batch sample loop.toml --vary gain=+-20% --vary lag=+-20%    how robust is a loop
 
 Margins and indices are those of the continuous loop, exact but for de-momi with a reduced model
 and adrc: these are simulated sampled with two periods and extrapolated. With `--ts` all are those
@@ -134,6 +135,28 @@ or on shards.
 Exit codes: 0 every row has a result; 3 all rows are there, but some have none (refused by a rule,
 or a plant that means nothing): each says why, and the summary counts them; 2 bad lists, nothing
 is written.";
+
+pub(super) const BATCH_SAMPLE: &str = "\
+Examples:
+  controller-sim batch sample loop.toml --vary gain=+-20% --vary lag=+-20% --vary dead_time=+-30%
+  controller-sim batch sample loop.toml --vary 'lags=0.5..2 log' -n 10000 --out rows.parquet --report robust.html
+  controller-sim batch sample loop.toml --vary gain=+-30% --worst worst    then: run worst/sample-7.toml
+  controller-sim batch sample loop.toml --uncertainty plant.toml --precision f32 --seed 2
+  controller-sim batch sample my.toml --vary 'actuator.hi=8..12 abs' --vary 'noise.std=0..0.02 abs'
+  controller-sim batch sample loop.toml --vary gain=+-20% --out rows.csv --resume       go on after an interruption
+  controller-sim batch sample loop.toml --vary gain=+-20% --shard 2/4 --out part2.csv   then: batch merge
+
+Quantities: gain, dead_time, lag (each factor of the denominator by itself), lag1, lag2, .., lags (one factor on all), zero,
+zero1, .., zeros; noise.std, sensor.resolution, actuator.lo, hi, rate, resolution, deadband. Ranges: `+-20 %`, `-10..30 %`,
+`0.5..2` (times the nominal value), `0.2..0.6 s`, `1..3 abs` (values); behind it `uniform`, `log` or `normal` (cut at three
+standard deviations, which are the ends). A factor of a higher degree becomes faster or slower as a whole.
+
+A loop is unstable when the sampled closed loop has poles outside the unit circle or on it, counted from its frequency
+response; the simulation does not decide. Indices and margins are summed up over stable loops, quantiles to 1e-4 or better
+where the values span no more than a factor of four. A sample depends on the seed and its number only: threads,
+interruptions and shards change no byte of the rows.
+
+Exit codes: 0 done, also when samples are refused (each row says why); 3 when no row has a result; 2 bad input.";
 
 pub(super) const BATCH_MERGE: &str = "\
 Examples:

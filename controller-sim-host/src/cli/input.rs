@@ -43,6 +43,13 @@ const PROCESSES: Kind = Kind {
     pipe: "write it to a file first",
 };
 
+const UNCERTAINTY: Kind = Kind {
+    name: "file of uncertainties",
+    longest: LONGEST,
+    missing: "write lines such as `gain = \"+-20 %\"` to it, or use `--vary gain=+-20%`",
+    pipe: "write it to a file first",
+};
+
 /// The name and the text of the scenario at `path`; `-` is the standard input.
 pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
     read_text(path, &SCENARIO)
@@ -51,6 +58,11 @@ pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
 /// The name and the text of the list of processes at `path`.
 pub(super) fn read_processes(path: &Path) -> Result<(String, String), Problem> {
     read_text(path, &PROCESSES)
+}
+
+/// The name and the text of the file of uncertainties at `path`.
+pub(super) fn read_uncertainty(path: &Path) -> Result<(String, String), Problem> {
+    read_text(path, &UNCERTAINTY)
 }
 
 fn read_text(path: &Path, kind: &Kind) -> Result<(String, String), Problem> {

@@ -176,7 +176,7 @@ fn object(row: &Row) -> Map<String, Value> {
             Kind::Count => Value::from(row.number()),
             Kind::Number => cell.parse::<f64>().ok().map_or(Value::Null, Value::from),
         };
-        (column.name.to_owned(), value)
+        (column.name.to_string(), value)
     });
     cells.collect()
 }

@@ -22,6 +22,7 @@ mod page;
 mod panels;
 mod parameters;
 mod path;
+mod samples;
 mod scale;
 mod standalone;
 mod tables;
@@ -77,6 +78,13 @@ pub fn page(chapters: &[Chapter<'_>], command: &str) -> String {
 #[must_use]
 pub fn analysis_page(list: &[crate::output::Analysed<'_>], command: &str) -> String {
     analysis::page(list, command)
+}
+
+/// The page of a study of samples of the scenario `name`: what was drawn, unstable loops, distributions. `command` is what made
+/// it. Cost: some 10 kB for each index and controller, whatever the number of samples.
+#[must_use]
+pub fn samples_page(made: &crate::output::Sampled<'_>, name: &str, command: &str) -> String {
+    samples::page(made, name, command)
 }
 
 /// The picture of a chapter as an SVG file of its own.

@@ -12,7 +12,7 @@ use toml::de::DeTable;
 const MOST: usize = 100;
 
 /// All keys at the top of a scenario.
-const ROOT_KEYS: [&str; 17] = [
+const ROOT_KEYS: [&str; 18] = [
     "version",
     "title",
     "description",
@@ -30,6 +30,7 @@ const ROOT_KEYS: [&str; 17] = [
     "event",
     "controller",
     "sweep",
+    "uncertainty",
 ];
 
 /// A file that `include` names.

@@ -38,6 +38,7 @@ mod syntax;
 mod table;
 mod texts;
 mod trial;
+mod uncertainty;
 mod value;
 mod write;
 
@@ -50,6 +51,7 @@ pub use override_key::override_key;
 pub use read::{Read, VERSION, read};
 pub use signal::{Between, Recording, Signal};
 pub(crate) use suggest::closest;
+pub use uncertainty::{Uncertain, uncertainty};
 pub use write::DesignFile;
 
 use controller_core::{AdrcConfig, ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
@@ -72,7 +74,7 @@ pub struct Scenario {
     pub latency: f64,
     /// Steps per sample for the metrics and the trace between samples, 1 or more.
     pub substeps: usize,
-    /// The plant, from the output of the actuator to the measurement.
+    /// The plant that is simulated, from the output of the actuator to the measurement.
     pub plant: TransferFunction,
     /// The part of the plant that the actuator drives first, when it is measured on its own: what the secondary loop
     /// of a cascade controls. [`plant`](Self::plant) is the whole, this part included.

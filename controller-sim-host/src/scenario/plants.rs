@@ -9,8 +9,10 @@ use controller_design::model::{TransferFunction, parse};
 /// A plant as it was read.
 #[derive(Debug, Clone)]
 pub(super) struct Plant {
-    /// From the actuator to the measurement.
+    /// From the actuator to the measurement, as it is known: what controllers are designed for.
     pub(super) whole: TransferFunction,
+    /// What is simulated.
+    pub(super) actual: TransferFunction,
     /// The part that the actuator drives first and the part behind it, when they are written one by one.
     pub(super) parts: Option<[TransferFunction; 2]>,
 }
@@ -25,17 +27,39 @@ pub(super) fn read(root: &Table<'_>, ts: Option<&Located<f64>>, latency: f64) ->
     let outer = models::read(&table);
     let inner = table.span("inner").map(|_| models::value(&table, "inner"));
     let plant = outer.and_then(|outer| match inner {
-        None => Some((Plant { whole: outer.value, parts: None }, outer.span)),
+        None => Some((Plant::known(outer.value, None), outer.span)),
         Some(inner) => Some((in_series(&table, inner?, &outer)?, outer.span)),
     });
-    if let (Some((plant, span)), Some(ts)) = (&plant, ts) {
-        let samples = (plant.whole.dead_time() + latency) / ts.value;
-        if samples > LONGEST_DELAY {
-            table.log.fault(delay_fault("the plant's dead time and the latency are", samples, span.clone()));
+    let actual = table.span("actual").and_then(|_| models::value(&table, "actual"));
+    if let Some(ts) = ts {
+        let known = plant.iter().map(|(plant, span)| (&plant.whole, span));
+        for (plant, span) in known.chain(actual.iter().map(|actual| (&actual.value, &actual.span))) {
+            let samples = (plant.dead_time() + latency) / ts.value;
+            if samples > LONGEST_DELAY {
+                let what = "the plant's dead time and the latency are";
+                table.log.fault(delay_fault(what, samples, span.clone()));
+            }
         }
     }
+    let mut plant = plant.map(|(plant, _)| plant);
+    if let (Some(plant), Some(actual)) = (&mut plant, actual) {
+        if plant.parts.is_some() {
+            let message = format!(
+                "`{}` is a whole plant; with an `inner` part there is no whole",
+                table.name("actual")
+            );
+            table.log.fault(Fault::new(code::CONFLICT, actual.span.clone(), message));
+        }
+        plant.actual = actual.value;
+    }
     table.finish();
-    plant.map(|(plant, _)| plant)
+    plant
+}
+
+impl Plant {
+    fn known(whole: TransferFunction, parts: Option<[TransferFunction; 2]>) -> Self {
+        Self { actual: whole.clone(), whole, parts }
+    }
 }
 
 /// The inner part with the outer one behind it.
@@ -60,7 +84,7 @@ fn in_series(
     }
     // Printed, a transfer function keeps its factors and every bit of its numbers.
     match parse(&format!("({})*({})", inner.value, outer.value)) {
-        Ok(whole) => Some(Plant { whole, parts: Some([inner.value, outer.value.clone()]) }),
+        Ok(whole) => Some(Plant::known(whole, Some([inner.value, outer.value.clone()]))),
         Err(errors) => {
             let reason = errors.first().map_or("", |error| &error.message);
             let message = format!("`{name}` and the outer part together: {reason}");

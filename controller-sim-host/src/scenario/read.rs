@@ -12,7 +12,7 @@ use super::plants::Plant;
 use super::sources::Sources;
 use super::table::Table;
 use super::trial::{self, Context};
-use super::{events, plants, ranges, run, surroundings, syntax, texts};
+use super::{events, plants, ranges, run, surroundings, syntax, texts, uncertainty};
 use crate::simulate::Precision;
 use toml::de::DeTable;
 
@@ -158,10 +158,12 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
     // Its length was reported: the sums with it are not reported again.
     let summand = if run.latency_is_long { 0.0 } else { latency };
     let plant = plants::read(roots.of("plant"), run.ts.as_ref(), summand);
-    let initial = surroundings::initial(roots.of("initial"), plant.as_ref().map(|plant| &plant.whole));
+    let initial = surroundings::initial(roots.of("initial"), plant.as_ref().map(|plant| &plant.actual));
     let noise = surroundings::noise(roots.of("noise"));
     let sensor = surroundings::sensor(roots.of("sensor"));
     let actuator = surroundings::actuator(roots.of("actuator"));
+
+    uncertainty::check(&roots.own);
 
     let context = Context {
         ts: run.ts.as_ref().map(|ts| ts.value),
@@ -192,7 +194,7 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
         duration: run.duration?,
         latency,
         substeps: run.substeps,
-        plant: plant.whole,
+        plant: plant.actual,
         inner_plant: plant.parts.map(|[inner, _]| inner),
         initial,
         events: events.iter().map(|placed| placed.event.clone()).collect(),

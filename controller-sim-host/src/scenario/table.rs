@@ -285,6 +285,11 @@ impl<'a> Table<'a> {
         None
     }
 
+    /// Its keys and values, whoever asks for them.
+    pub(super) const fn entries(&self) -> &'a DeTable<'a> {
+        self.entries
+    }
+
     /// The keys that are there, in the order they were written, each with the key's and the value's place.
     pub(super) fn written(&self) -> Vec<(&'a str, Range<usize>, Range<usize>)> {
         let mut keys: Vec<_> = self

@@ -24,6 +24,7 @@ pub use noise::Gaussian;
 pub use record::{Band, COLUMNS, Envelope, Record, View};
 pub use remarks::Remark;
 pub use run::{
-    ControllerResult, InnerSample, Precision, RunError, RunOptions, RunResult, Sample, run, run_with,
+    ControllerResult, InnerSample, Precision, RunError, RunOptions, RunResult, Sample, run, run_controller,
+    run_with,
 };
-pub use stretches::{EventKind, Stretch, sample_of};
+pub use stretches::{EventKind, Stretch, sample_of, windows};

@@ -174,3 +174,20 @@ pub fn run_with(
     // Of several errors the first controller's is the one that is told.
     Ok(RunResult { controllers: list.into_iter().collect::<Result<_, _>>()? })
 }
+
+/// The run of one controller, as [`run`] makes it, on this thread.
+///
+/// # Errors
+/// Those of [`run`]; stopped by `control`.
+pub fn run_controller(
+    scenario: &Scenario,
+    index: usize,
+    precision: Precision,
+    control: &Control,
+) -> Result<ControllerResult, RunError> {
+    let options = RunOptions { precision, ..RunOptions::default() };
+    match precision {
+        Precision::F32 => run_one::<f32>(scenario, index, options, control, &mut None),
+        Precision::F64 => run_one::<f64>(scenario, index, options, control, &mut None),
+    }
+}

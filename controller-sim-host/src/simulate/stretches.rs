@@ -35,6 +35,13 @@ pub fn sample_of(at: f64, ts: f64) -> u64 {
     (if (s - near).abs() < 1e-9 + 4.0 * f64::EPSILON * near.abs() { near } else { s.ceil() }) as u64
 }
 
+/// When the stretches of a scenario begin \[s\], and what begins them.
+#[must_use]
+pub fn windows(scenario: &Scenario) -> Vec<(f64, EventKind)> {
+    let (list, _) = Stretches::new(scenario).finish();
+    list.into_iter().map(|stretch| (stretch.at, stretch.kind)).collect()
+}
+
 /// Collects the indices of each stretch of one controller.
 #[derive(Debug)]
 pub(super) struct Stretches {

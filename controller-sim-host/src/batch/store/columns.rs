@@ -1,6 +1,6 @@
 //! Rows as a Parquet file.
 
-use crate::batch::row::{COLUMNS, Kind, Row};
+use crate::batch::layout::{Cells, Kind, Layout};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::Result;
@@ -13,34 +13,36 @@ use std::sync::Arc;
 /// Rows of a group: so many are held in memory.
 const ROWS: usize = 1 << 13;
 
-/// Writes rows as they come: texts as texts, numbers as doubles that may be null, the number of the row as a 64-bit integer.
+/// Writes rows as they come: texts as texts, numbers as doubles that may be null, counts as 64-bit
+/// integers.
 /// The same rows give the same bytes.
 pub(super) struct ColumnWriter<W: Write + Send> {
     file: SerializedFileWriter<W>,
-    rows: Vec<Row>,
+    layout: Layout,
+    rows: Vec<Cells>,
 }
 
 impl<W: Write + Send> ColumnWriter<W> {
-    pub(super) fn new(to: W) -> Result<Self> {
+    pub(super) fn new(to: W, layout: &Layout) -> Result<Self> {
         let properties = WriterProperties::builder()
             // The library's own name would change the bytes with each of its versions.
             .set_created_by(concat!("controller-sim ", env!("CARGO_PKG_VERSION")).to_owned())
             .set_compression(Compression::SNAPPY)
             .set_statistics_enabled(EnabledStatistics::Chunk)
             .set_offset_index_disabled(true);
-        let file = SerializedFileWriter::new(to, Arc::new(schema()?), Arc::new(properties.build()))?;
-        Ok(Self { file, rows: Vec::new() })
+        let file = SerializedFileWriter::new(to, Arc::new(schema(layout)?), Arc::new(properties.build()))?;
+        Ok(Self { file, layout: layout.clone(), rows: Vec::new() })
     }
 
-    pub(super) fn write(&mut self, row: &Row) -> Result<()> {
+    pub(super) fn write(&mut self, row: &Cells) -> Result<()> {
         self.rows.push(row.clone());
         if self.rows.len() == ROWS { self.write_group() } else { Ok(()) }
     }
 
     fn write_group(&mut self) -> Result<()> {
         let mut group = self.file.next_row_group()?;
-        for (i, column) in COLUMNS.iter().enumerate() {
-            let cells = || self.rows.iter().map(|row| &*row.cells()[i]);
+        for (i, column) in self.layout.columns().iter().enumerate() {
+            let cells = || self.rows.iter().map(|row| &*row.all()[i]);
             let Some(mut next) = group.next_column()? else { break };
             match column.kind {
                 Kind::Text => {
@@ -71,15 +73,15 @@ impl<W: Write + Send> ColumnWriter<W> {
     }
 }
 
-fn schema() -> Result<Type> {
-    let fields = COLUMNS.iter().map(|column| {
+fn schema(layout: &Layout) -> Result<Type> {
+    let fields = layout.columns().iter().map(|column| {
         let (physical, repetition) = match column.kind {
             Kind::Text => (Physical::BYTE_ARRAY, Repetition::REQUIRED),
             Kind::Number => (Physical::DOUBLE, Repetition::OPTIONAL),
             Kind::Count => (Physical::INT64, Repetition::REQUIRED),
         };
         let logical = (physical == Physical::BYTE_ARRAY).then_some(LogicalType::String);
-        let field = Type::primitive_type_builder(column.name, physical).with_repetition(repetition);
+        let field = Type::primitive_type_builder(&column.name, physical).with_repetition(repetition);
         field.with_logical_type(logical).build().map(Arc::new)
     });
     Type::group_type_builder("rows").with_fields(fields.collect::<Result<_>>()?).build()

@@ -2,9 +2,8 @@
 
 use super::columns::ColumnWriter;
 use super::table::push_line;
-use super::{Format, RowReader, head};
-use crate::batch::row::Row;
-use crate::batch::summary::Summary;
+use super::{Format, RowReader};
+use crate::batch::layout::{Cells, Layout};
 use crate::output::{FileTarget, Problem, is_same_file, publish};
 use std::io::Write;
 use std::ops::Range;
@@ -14,16 +13,22 @@ use std::path::{Path, PathBuf};
 struct Part {
     path: PathBuf,
     study: String,
+    layout: Layout,
     rows: Range<usize>,
 }
 
-/// Joins the shards of a study, tables or Parquet files in any order, to the file that the whole study gives; gives what the
-/// rows come to.
+/// Joins the shards of a study, tables or Parquet files in any order, to the file that the whole study gives; gives the name
+/// of the study and its number of rows, all of which `see` was shown in their order.
 ///
 /// # Errors
 /// All reasons why the files are not one study: rows that are missing or there twice, rows of different studies, files that
 /// have no rows of a study; a file that exists and may not be replaced.
-pub fn merge(parts: &[PathBuf], out: &Path, force: bool) -> Result<(String, Summary, usize), Vec<Problem>> {
+pub fn merge(
+    parts: &[PathBuf],
+    out: &Path,
+    force: bool,
+    mut see: impl FnMut(&Layout, &Cells),
+) -> Result<(String, usize), Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     let format = Format::of(out).map_err(one)?;
     let target = FileTarget::new(out, force).map_err(one)?;
@@ -48,14 +53,17 @@ pub fn merge(parts: &[PathBuf], out: &Path, force: bool) -> Result<(String, Summ
     if !problems.is_empty() {
         return Err(problems);
     }
+    let Some(layout) = found.first().map(|part| part.layout.clone()) else {
+        return Err(one(Problem::new("usage", "there are no files to join")));
+    };
     let mut draft = target.create().map_err(one)?;
     let failed = |error: &dyn std::fmt::Display| vec![target.failed(error)];
-    let (mut summary, mut rows): (Option<Summary>, usize) = (None, 0);
-    let mut each = |take: &mut dyn FnMut(&Row) -> Result<(), Vec<Problem>>| -> Result<(), Vec<Problem>> {
+    let mut rows = 0;
+    let mut each = |take: &mut dyn FnMut(&Cells) -> Result<(), Vec<Problem>>| -> Result<(), Vec<Problem>> {
         for part in &found {
             let mut reader = RowReader::open(&part.path).map_err(|why| failed(&why))?;
             while let Some(row) = reader.next_row().map_err(|why| failed(&why))? {
-                summary.get_or_insert_with(|| Summary::new(row.point()[0])).add(&row);
+                see(&layout, &row);
                 rows += 1;
                 take(&row)?;
             }
@@ -64,7 +72,7 @@ pub fn merge(parts: &[PathBuf], out: &Path, force: bool) -> Result<(String, Summ
     };
     let draft = match format {
         Format::Csv => {
-            let mut line = head() + "\n";
+            let mut line = layout.head() + "\n";
             each(&mut |row| {
                 push_line(&mut line, row);
                 let written = draft.write_all(line.as_bytes());
@@ -74,14 +82,14 @@ pub fn merge(parts: &[PathBuf], out: &Path, force: bool) -> Result<(String, Summ
             draft
         }
         Format::Parquet => {
-            let mut writer = ColumnWriter::new(draft).map_err(|error| failed(&error))?;
+            let mut writer = ColumnWriter::new(draft, &layout).map_err(|error| failed(&error))?;
             each(&mut |row| writer.write(row).map_err(|error| failed(&error)))?;
             writer.finish().map_err(|error| failed(&error))?
         }
     };
     publish(vec![draft.complete().map_err(one)?]).map_err(one)?;
     let study = found.into_iter().next().map(|part| part.study).unwrap_or_default();
-    Ok((study, summary.unwrap_or_default(), rows))
+    Ok((study, rows))
 }
 
 /// Looks at every row of a file.
@@ -89,6 +97,7 @@ fn scan(path: &Path) -> Result<Part, String> {
     let mut reader = RowReader::open(path)?;
     let first = reader.next_row()?.ok_or("it has no rows")?;
     let (study, start) = (first.study().to_owned(), first.number());
+    let layout = reader.layout().cloned().ok_or("it has no rows")?;
     let mut next = start + 1;
     while let Some(row) = reader.next_row()? {
         if row.study() != study {
@@ -99,14 +108,14 @@ fn scan(path: &Path) -> Result<Part, String> {
         }
         next += 1;
     }
-    Ok(Part { path: path.to_owned(), study, rows: start..next })
+    Ok(Part { path: path.to_owned(), study, layout, rows: start..next })
 }
 
 /// Why the parts, in the order of their rows, are not a whole.
 fn faults(parts: &[Part]) -> Vec<Problem> {
     let mut problems = Vec::new();
     let Some(first) = parts.first() else { return problems };
-    for part in parts.iter().filter(|part| part.study != first.study) {
+    for part in parts.iter().filter(|part| part.study != first.study || part.layout != first.layout) {
         let message =
             format!("`{}` and `{}` are of different studies", first.path.display(), part.path.display());
         let help = "shards of one study have the same plants, methods, options and version of the program";

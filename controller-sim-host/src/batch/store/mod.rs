@@ -9,8 +9,8 @@ mod table;
 
 pub use merge::merge;
 
-use super::reader::{RowReader, head};
-use super::row::Row;
+use super::layout::{Cells, Layout};
+use super::reader::RowReader;
 use crate::output::{FileTarget, Problem, publish};
 use columns::ColumnWriter;
 use std::fs::{self, File, OpenOptions};
@@ -81,7 +81,7 @@ fn journal(path: &Path, format: Format) -> PathBuf {
 ///
 /// # Errors
 /// A file that exists and may not be replaced; what the system reports.
-pub fn create(path: &Path, force: bool) -> Result<Begun, Problem> {
+pub fn create(path: &Path, force: bool, layout: &Layout) -> Result<Begun, Problem> {
     let format = Format::of(path)?;
     let target = FileTarget::new(path, force)?;
     let journal = journal(path, format);
@@ -91,7 +91,7 @@ pub fn create(path: &Path, force: bool) -> Result<Begun, Problem> {
     }
     let file = File::create(&journal).map_err(|error| target.failed(&error))?;
     let mut to = BufWriter::new(file);
-    writeln!(to, "{}", head()).and_then(|()| to.flush()).map_err(|error| target.failed(&error))?;
+    writeln!(to, "{}", layout.head()).and_then(|()| to.flush()).map_err(|error| target.failed(&error))?;
     Ok(Begun { file: Some(RowFile { target, format, journal, to, line: String::new() }), kept: 0 })
 }
 
@@ -102,28 +102,30 @@ pub fn create(path: &Path, force: bool) -> Result<Begun, Problem> {
 /// A file of another study or shard, or of something else; what the system reports.
 pub fn resume(
     path: &Path,
-    study: &str,
+    (study, layout): (&str, &Layout),
     range: &Range<usize>,
-    mut keep: impl FnMut(&Row),
+    mut keep: impl FnMut(&Cells),
 ) -> Result<Begun, Problem> {
     let format = Format::of(path)?;
     let target = FileTarget::new(path, true)?;
     let journal = journal(path, format);
     let begun: &Path = if journal.exists() { &journal } else { path };
     if !begun.exists() {
-        return create(path, false);
+        return create(path, false, layout);
     }
     let wrong = |why: String| {
         let problem = Problem::new("file", format!("cannot go on with `{}`: {why}", begun.display()));
         problem.help("give another file, or `--force` instead of `--resume` to begin anew")
     };
     let mut reader = RowReader::open(begun).map_err(wrong)?;
+    let other = "it is of another study: plants, methods, options or the program differ";
+    if reader.layout().is_some_and(|found| found != layout) {
+        return Err(wrong(other.to_owned()));
+    }
     let mut kept = 0;
     while let Some(row) = reader.next_row().map_err(wrong)? {
         if row.study() != study {
-            return Err(wrong(
-                "it is of another study: plants, methods, options or the program differ".to_owned(),
-            ));
+            return Err(wrong(other.to_owned()));
         }
         if kept == range.len() || row.number() != range.start + kept + 1 {
             return Err(wrong("it has the rows of another shard".to_owned()));
@@ -145,7 +147,7 @@ pub fn resume(
     file.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut to = BufWriter::new(file);
     if reader.complete() == 0 {
-        writeln!(to, "{}", head()).map_err(failed)?;
+        writeln!(to, "{}", layout.head()).map_err(failed)?;
     }
     Ok(Begun { file: Some(RowFile { target, format, journal, to, line: String::new() }), kept })
 }
@@ -161,9 +163,9 @@ impl RowFile {
     ///
     /// # Errors
     /// What the system reports.
-    pub fn write(&mut self, rows: &[Row]) -> Result<(), Problem> {
+    pub fn write(&mut self, rows: &[impl AsRef<Cells>]) -> Result<(), Problem> {
         self.line.clear();
-        rows.iter().for_each(|row| push_line(&mut self.line, row));
+        rows.iter().for_each(|row| push_line(&mut self.line, row.as_ref()));
         let written = self.to.write_all(self.line.as_bytes()).and_then(|()| self.to.flush());
         written.map_err(|error| self.target.failed(&error))
     }
@@ -180,7 +182,8 @@ impl RowFile {
         let target = self.target.clone();
         let mut reader = RowReader::open(&self.journal).map_err(|why| target.failed(&why))?;
         let failed = |error: parquet::errors::ParquetError| target.failed(&error);
-        let mut writer = ColumnWriter::new(target.create()?).map_err(failed)?;
+        let layout = reader.layout().cloned().ok_or_else(|| target.failed(&"its rows are gone"))?;
+        let mut writer = ColumnWriter::new(target.create()?, &layout).map_err(failed)?;
         while let Some(row) = reader.next_row().map_err(|why| target.failed(&why))? {
             writer.write(&row).map_err(failed)?;
         }

@@ -1,10 +1,10 @@
 //! A row as a line.
 
-use crate::batch::row::Row;
+use crate::batch::layout::Cells;
 
 /// Adds the line of a row, with its end. A cell with a separator, a quote, or a space at an end stands in quotes.
-pub(super) fn push_line(to: &mut String, row: &Row) {
-    for (i, cell) in row.cells().iter().enumerate() {
+pub(super) fn push_line(to: &mut String, row: &Cells) {
+    for (i, cell) in row.all().iter().enumerate() {
         if i > 0 {
             to.push(',');
         }
