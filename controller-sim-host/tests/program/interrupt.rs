@@ -150,3 +150,38 @@ fn a_study_goes_on_where_it_was_stopped() {
     }
     assert!(!folder.names().iter().any(|name| name.ends_with(".rows.csv")));
 }
+
+/// A study of samples that is stopped, or killed, half-way goes on where it was: the file is that of one that was not.
+#[test]
+fn samples_go_on_where_they_were_killed() {
+    let folder = Folder::new("interrupt-samples");
+    // Long enough that there is time to kill it.
+    folder.write("s.toml", &BASE.replacen("duration = 20.0", "duration = 400.0", 1));
+    let study = ["batch", "sample", "s.toml", "--vary", "gain=+-20%", "-n", "60", "--jobs", "2", "--quiet"];
+    let with = |more: &[&'static str]| [&study[..], more].concat();
+    folder.done(&with(&["--out", "whole.csv"]));
+    folder.done(&with(&["--out", "whole.parquet"]));
+    let size = folder.bytes("whole.csv").len() as u64;
+    for (kind, begun) in [("csv", "cut.csv"), ("parquet", "cut.parquet.rows.csv")] {
+        let out = if kind == "csv" { "cut.csv" } else { "cut.parquet" };
+        let mut resume = Vec::new();
+        for (name, code) in [("-INT", Some(130)), ("-KILL", None)] {
+            let there = || fs::metadata(folder.0.join(begun)).map_or(0, |file| file.len());
+            let before = there();
+            let child = start(&folder, &[&with(&["--out", out]), &resume[..]].concat());
+            wait_until("another row in the file", || there() > before.max(2000));
+            signal(&child, name);
+            let output = end(child);
+            assert_eq!(output.status.code(), code, "{}", text(&output.stderr));
+            if code.is_some() {
+                let said = text(&output.stderr);
+                assert!(said.starts_with("stopped; ") && said.contains("`--resume` goes on"), "{said}");
+            }
+            assert!(there() < size, "it was stopped before its end");
+            resume = vec!["--resume"];
+        }
+        folder.done(&with(&["--out", out, "--resume"]));
+        assert!(folder.bytes(out) == folder.bytes(&format!("whole.{kind}")), "{kind}");
+    }
+    assert!(!folder.names().contains(&"cut.parquet.rows.csv".to_owned()));
+}

@@ -20,6 +20,7 @@ mod pil;
 mod reproduced;
 mod runs;
 mod same_bytes;
+mod sample;
 mod schema;
 mod several;
 mod studies;
