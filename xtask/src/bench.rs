@@ -1,5 +1,5 @@
 //! The speed of the simulation, beside a plain loop in Python with numpy, that of the tuning rules
-//! ([`design`]), and that of many plants by them ([`batch`]).
+//! ([`design`]), that of many plants by them ([`batch`]), and that of many plants around one ([`robustness`]).
 //!
 //! Both compute the same loop (plant, controller, disturbance estimator); the integrals of the error show that they did.
 //! The time is that of the processor: other work on the machine disturbs it less than the clock. Runs of both sides
@@ -8,6 +8,7 @@
 
 mod batch;
 mod design;
+mod robustness;
 
 use std::path::{Path, PathBuf};
 
@@ -92,7 +93,9 @@ pub(crate) fn run(root: &Path) -> Outcome {
     let simulation = judge(ratio, cost);
     let rules = design::run(root, &python, &folder);
     let batch = batch::run(root, &python, &folder);
-    let faults: Vec<String> = [simulation, rules, batch].into_iter().filter_map(Result::err).collect();
+    let robustness = robustness::run(root, &folder);
+    let faults: Vec<String> =
+        [simulation, rules, batch, robustness].into_iter().filter_map(Result::err).collect();
     if faults.is_empty() { Ok(()) } else { Err(faults.join("; ")) }
 }
 
