@@ -4,13 +4,16 @@ use std::vec::Vec;
 
 use controller_core::{
     Adrc, AdrcCoefficients, AdrcConfig, AnyCompensator, Coefficients, CompensatorConfig, ConfigErrors, Pid,
-    PidCoefficients, PidConfig,
+    PidCoefficients, PidConfig, Real,
 };
 
+use super::owned::OwnedCoefficients;
 use crate::hold::{delay_by, minus_one};
 use crate::model::Complex;
 
-/// A controller as it runs: a PID and, if there is one, a disturbance compensator, both in double precision.
+/// A controller as it runs: a PID and, if there is one, a disturbance compensator, or an ADRC. [`new`](Self::new) and its
+/// like build it in double precision; [`of_pid`](Self::of_pid) and [`of_adrc`](Self::of_adrc) take the coefficients of a law
+/// that was built in any number type, whose values they hold exactly.
 ///
 /// ```text
 /// v = -C(z)*y + u_f,   u_f = C_u(z)*u + C_y(z)*y
@@ -31,7 +34,7 @@ use crate::model::Complex;
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiscreteLaw {
     kind: Kind,
-    compensator: Option<AnyCompensator<f64, Vec<f64>>>,
+    compensator: Option<OwnedCoefficients>,
     ts: f64,
 }
 
@@ -70,14 +73,61 @@ impl DiscreteLaw {
     ) -> Result<Self, ConfigErrors> {
         let capacity = AnyCompensator::<f64, Vec<f64>>::needed_capacity(compensator, ts).saturating_add(2);
         // Both are built before either fails, so that all faults show at once.
-        let built = (Pid::<f64>::new(pid, ts), AnyCompensator::new(compensator, ts, capacity));
+        let built =
+            (Pid::<f64>::new(pid, ts), AnyCompensator::<f64, Vec<f64>>::new(compensator, ts, capacity));
         let (law, compensation) = match built {
             (Ok(law), Ok(compensation)) => (law, compensation),
             (Err(first), Err(second)) => return Err(first.and(&second)),
             (Err(faults), _) | (_, Err(faults)) => return Err(faults),
         };
         compensator.check_sign(pid)?;
-        Ok(Self { kind: Kind::Pid(law.coefficients()), compensator: Some(compensation), ts })
+        Ok(Self::of_pid(&law.coefficients(), Some(&compensation.coefficients()), ts))
+    }
+
+    /// The law with these coefficients, as a target runs it every `ts` \[s\]: those of an `f32` law are the ones it has
+    /// after rounding.
+    ///
+    /// ```
+    /// use controller_core::{Pid, PidConfig};
+    /// use controller_design::margins::DiscreteLaw;
+    /// let config = PidConfig { kp: 2.0, ki: 0.3, ..PidConfig::default() };
+    /// let flashed = Pid::<f32>::new(&config, 0.1).expect("valid").coefficients();
+    /// let law = DiscreteLaw::of_pid(&flashed, None, 0.1);
+    /// // At z = -1 the integral term is ki*ts/2, with the product in single precision.
+    /// assert_eq!(law.pid(core::f64::consts::PI).re, 2.0 + 0.5 * f64::from(0.03_f32));
+    /// ```
+    #[must_use]
+    pub fn of_pid<T: Real>(
+        pid: &PidCoefficients<T>,
+        compensator: Option<&Coefficients<'_, T>>,
+        ts: f64,
+    ) -> Self {
+        let PidCoefficients { ki_now, ki_before, g, p_r, h_r, p_y, h_y } = *pid;
+        let pid = PidCoefficients {
+            ki_now: ki_now.to_f64(),
+            ki_before: ki_before.to_f64(),
+            g: g.to_f64(),
+            p_r: p_r.to_f64(),
+            h_r: h_r.to_f64(),
+            p_y: p_y.to_f64(),
+            h_y: h_y.to_f64(),
+        };
+        Self { kind: Kind::Pid(pid), compensator: compensator.map(OwnedCoefficients::of), ts }
+    }
+
+    /// The ADRC with these coefficients, as a target runs it every `ts` \[s\].
+    #[must_use]
+    pub fn of_adrc<T: Real>(law: &AdrcCoefficients<T>, ts: f64) -> Self {
+        let AdrcCoefficients { g, l1, l2, l3, kp, kd } = *law;
+        let law = AdrcCoefficients {
+            g: g.to_f64(),
+            l1: l1.to_f64(),
+            l2: l2.to_f64(),
+            l3: l3.to_f64(),
+            kp: kp.to_f64(),
+            kd: kd.to_f64(),
+        };
+        Self { kind: Kind::Adrc(law), compensator: None, ts }
     }
 
     /// A second-order ADRC, discretised for the sampling period `ts` \[s\].
@@ -127,7 +177,7 @@ impl DiscreteLaw {
             return (Estimator::new(law, theta).own(law), Complex::ZERO);
         }
         let Some(law) = &self.compensator else { return (Complex::ONE, Complex::ZERO) };
-        let law = law.coefficients();
+        let law = law.view();
         let z_minus_one = minus_one(theta);
         let tap = |g: f64| Tap::new(g, z_minus_one);
         let shared = shared_loss(&law, tap);
@@ -151,7 +201,7 @@ impl DiscreteLaw {
             Kind::Adrc(law) => law.kp * law.l1 + law.kd * law.l2 + law.l3,
         };
         self.compensator.as_ref().map_or(pid, |law| {
-            let law = law.coefficients();
+            let law = law.view();
             let tap = |_: f64| Tap { value: Complex::ZERO, difference: Complex::ONE };
             let shared: f64 = law.e_gain.iter().map(|g| 0.5 * g).product();
             pid + law.gain * law.inv_gain * y_path(&law, tap).re * shared
@@ -167,7 +217,7 @@ impl DiscreteLaw {
         };
         let mut delay = 0;
         if let Some(law) = &self.compensator {
-            let law = law.coefficients();
+            let law = law.view();
             gains.extend(law.g);
             gains.extend(law.e_gain);
             delay = law.delay.saturating_add(1);

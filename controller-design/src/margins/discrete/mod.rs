@@ -11,8 +11,10 @@
 
 mod delay;
 mod extremes;
+mod jitter;
 mod law;
 mod noise;
+mod owned;
 mod sampled;
 mod sweep;
 

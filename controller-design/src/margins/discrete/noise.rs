@@ -34,9 +34,19 @@ pub(super) fn noise_gains(held: &DiscreteLoop, sweep: &Sweep) -> NoiseGains {
     }
 }
 
-/// `sqrt(1/pi * integral |u/n|^2 dtheta)` from 0 to pi: five Gauss points between the points of the sweep, which already
-/// follow every feature of the loop.
+/// `std(u)/std(n)` for white noise.
 fn white(held: &DiscreteLoop, sweep: &Sweep) -> f64 {
+    root_mean_square(sweep, |theta| held.at(theta).noise().abs())
+}
+
+/// `std(u[k] - u[k-1])/std(n)` for white noise.
+pub(super) fn increment(held: &DiscreteLoop, sweep: &Sweep) -> f64 {
+    root_mean_square(sweep, |theta| 2.0 * libm::sin(0.5 * theta) * held.at(theta).noise().abs())
+}
+
+/// `sqrt(1/pi * integral gain^2 dtheta)` from 0 to pi: five Gauss points between the points of the sweep, which already
+/// follow every feature of the loop.
+fn root_mean_square(sweep: &Sweep, gain: impl Fn(f64) -> f64) -> f64 {
     const NODES: [(f64, f64); 5] = [
         (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
         (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
@@ -45,7 +55,7 @@ fn white(held: &DiscreteLoop, sweep: &Sweep) -> f64 {
         (0.906_179_845_938_664, 0.236_926_885_056_189_1),
     ];
     let power = |theta: f64| {
-        let size = held.at(theta).noise().abs();
+        let size = gain(theta);
         size * size
     };
     let Some(first) = sweep.points.first() else { return 0.0 };
