@@ -4,6 +4,7 @@ mod analyze;
 mod arguments;
 mod assess;
 mod batch;
+mod card;
 mod design;
 mod examples;
 mod execute;
@@ -40,6 +41,8 @@ pub const EXIT_INPUT: u8 = 2;
 pub const EXIT_REFUSED: u8 = 3;
 /// Exit code of everything else.
 pub const EXIT_INTERNAL: u8 = 1;
+/// Exit code of a check that failed: a figure does not keep the bounds of a loop card.
+pub const EXIT_WORSE: u8 = 4;
 /// Exit code of a run that was stopped from outside: that of a shell for Ctrl-C.
 pub const EXIT_STOPPED: u8 = 130;
 
@@ -68,6 +71,11 @@ impl Failure {
     /// A result that was printed, and is not as it must be.
     fn differs() -> Self {
         Self { troubles: Vec::new(), code: EXIT_INTERNAL }
+    }
+
+    /// A loop that does not keep its card, which was printed.
+    fn worse() -> Self {
+        Self { troubles: Vec::new(), code: EXIT_WORSE }
     }
 
     /// Somebody wanted it to end.

@@ -4,6 +4,7 @@
 //! * [`simulate`]: the run itself and its indices.
 //! * [`log`]: logs of real processes, read from CSV.
 //! * [`analysis`]: margins and noise of the loops of a scenario.
+//! * [`card`]: every figure of one loop as it is deployed, judged against practice and held by a file.
 //! * [`plant`]: plants that move exactly between the samples.
 //! * [`output`]: tables, JSON, CSV, messages with carets.
 //! * [`report`]: pages and pictures.
@@ -30,6 +31,7 @@
 pub mod advise;
 pub mod analysis;
 pub mod batch;
+pub mod card;
 pub mod cli;
 pub mod demo;
 pub mod design_file;

@@ -23,6 +23,9 @@ use crate::shell::{Cmd, Outcome};
 /// The table for people.
 const PAGE: &str = "controller-firmware/COSTS.md";
 
+/// The part of the table that is built into the program `controller-sim`, for loop cards.
+const CARD: &str = "controller-sim-host/src/card/costs.csv";
+
 /// Where the comparison with other controllers is shown, and the lines that begin and end it there.
 const README: &str = "README.md";
 const BEGIN: &str = "<!-- costs: written by cargo xtask size --update -->\n";
@@ -47,10 +50,12 @@ pub(crate) fn run(root: &Path, then: Then) -> Outcome<String> {
     let rows = measure::all(root)?;
     let (text, page) = (table::text(&rows, version), markdown::page(&rows, version));
     let readme = readme(root, &peers::table(&rows))?;
-    let tables: [(PathBuf, &str); 3] = [
+    let card = table::csv(&rows);
+    let tables: [(PathBuf, &str); 4] = [
         (Path::new("tests/target").join(format!("size-{number}.txt")), &text),
         (PAGE.into(), &page),
         (README.into(), &readme),
+        (CARD.into(), &card),
     ];
     match then {
         Then::Markdown => print!("{page}"),

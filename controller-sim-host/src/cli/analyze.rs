@@ -1,22 +1,26 @@
 //! `analyze`: margins and noise of the loops of a scenario, or of a plant and a PID from the command line.
 
-use super::arguments::{Options, key_and_value};
+use super::arguments::{Number, Options, key_and_value};
+use super::card::{read_card, request, save};
 use super::execute::Job;
 use super::scenarios::{Inputs, read_files, read_text};
 use super::{Failure, colours, examples, print};
 use crate::analysis::{Analysis, analyse};
+use crate::card::{Request, loop_card};
 use crate::output::{
-    Analysed, FileTarget, Problem, Severity, Trouble, Written, analysis_json, analysis_table, is_same_file,
-    render,
+    Analysed, FileTarget, Problem, Severity, Trouble, Written, analysis_json, analysis_table, card_table,
+    check_table, is_same_file, publish, render,
 };
 use crate::report;
-use clap::{Args, ValueHint};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{ArgGroup, Args, ValueHint};
+use controller_pil::board::BOARDS;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `analyze`.
 #[derive(Debug, Args)]
-#[command(after_help = examples::ANALYZE)]
+#[command(after_help = examples::ANALYZE, group = ArgGroup::new("written").multiple(true))]
 pub(super) struct AnalyzeArguments {
     /// A scenario or design file; `-` reads it from the standard input
     #[arg(required_unless_present = "plant", value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -54,15 +58,40 @@ pub(super) struct AnalyzeArguments {
     /// Change a value of the file, for example `latency=0.05`; may be given more than once
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
     set: Vec<(String, String)>,
-    /// Write a page with Bode and Nyquist plots, sensitivities and noise to this file, for the browser
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    /// Write a page with the loop card, step and load, Bode and Nyquist plots, sensitivities and noise to this file, for
+    /// the browser
+    #[arg(long, value_name = "FILE", group = "written", value_hint = ValueHint::FilePath)]
     report: Option<PathBuf>,
-    /// Replace the file if it exists
-    #[arg(long, requires = "report")]
+    /// Print the loop card, too: every figure of the law as it is deployed, judged against practice
+    #[arg(long, help_heading = CARD)]
+    card: bool,
+    /// Write the loop card to this file, with bounds for `--check`
+    #[arg(long, value_name = "FILE", group = "written", conflicts_with = "check", value_hint = ValueHint::FilePath, help_heading = CARD)]
+    save_card: Option<PathBuf>,
+    /// Hold the loop against this card: exit code 4 when a figure does not keep its bounds
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = CARD)]
+    check: Option<PathBuf>,
+    /// The controller of `--save-card`, when the file has several
+    #[arg(long, value_name = "NAME", requires = "save_card", help_heading = CARD)]
+    controller: Option<String>,
+    /// Number type of the deployed law; if not given f32, or that of the card
+    #[arg(long, value_enum, help_heading = CARD)]
+    precision: Option<Number>,
+    /// The board whose published instructions and memory are shown; if not given mps2-an386, or that of the card
+    #[arg(
+        long,
+        value_name = "BOARD",
+        help_heading = CARD,
+        value_parser = PossibleValuesParser::new(BOARDS.map(|board| PossibleValue::new(board.name).help(board.core)))
+    )]
+    board: Option<String>,
+    /// Replace files that exist
+    #[arg(long, requires = "written")]
     force: bool,
 }
 
 const LOOP: &str = "Loop without a file";
+const CARD: &str = "Loop card";
 
 /// The name of what stands on the command line.
 const TYPED: &str = "<command line>";
@@ -81,38 +110,100 @@ pub(super) fn run(arguments: &AnalyzeArguments, json: bool, command: &str) -> Re
         (None, None) => Inputs::default(),
     };
     let mut troubles = inputs.troubles.clone();
-    let target = arguments.report.as_ref().map(|path| target(path, arguments.force, &inputs)).transpose();
-    let target = target.unwrap_or_else(|problem| {
-        troubles.push(problem.into());
+    let held = arguments.check.as_ref().map(|path| read_card(path)).transpose();
+    let held = held.unwrap_or_else(|trouble| {
+        troubles.push(trouble);
         None
+    });
+    let mut target = |option: &str, path: &Option<PathBuf>| {
+        let checked = path.as_ref().map(|path| target(option, path, arguments, &inputs)).transpose();
+        checked.unwrap_or_else(|problem| {
+            troubles.push(problem.into());
+            None
+        })
+    };
+    let page = target("--report", &arguments.report);
+    let card = target("--save-card", &arguments.save_card);
+    let request = request(arguments.precision, arguments.board.as_deref(), held.as_ref());
+    let request = request.unwrap_or_else(|problem| {
+        troubles.push(problem.into());
+        Request::default()
     });
     if !troubles.is_empty() {
         return Err(Failure::input(troubles));
     }
-    let analysed: Vec<Analysed<'_>> = Job::all(&inputs.list, None).iter().map(analysed).collect();
+    let mut analysed: Vec<Analysed<'_>> = Job::all(&inputs.list, None).iter().map(analysed).collect();
     check(&analysed)?;
-    if let Some(target) = &target {
-        let page = report::analysis_page(&analysed, command);
-        target.write(|file| file.write_all(page.as_bytes())).map_err(Failure::internal)?;
+    if arguments.card || page.is_some() {
+        make_cards(&mut analysed, request);
     }
-    let file = |target: &FileTarget| Written {
-        kind: "report",
-        path: target.path().display().to_string(),
-        run: None,
-    };
-    let written: Vec<Written> = target.iter().map(file).collect();
+    let mut files = Vec::new();
+    if let Some(target) = &card {
+        files.push(filled(target, &save(&analysed, arguments.controller.as_deref(), request, command)?)?);
+    }
+    if let Some(held) = &held {
+        held.hold(&mut analysed, request)?;
+    }
+    if let Some(target) = &page {
+        files.push(filled(target, &report::analysis_page(&analysed, command))?);
+    }
+    publish(files).map_err(Failure::internal)?;
+    let file =
+        |kind, target: &FileTarget| Written { kind, path: target.path().display().to_string(), run: None };
+    let mut written: Vec<Written> = page.iter().map(|target| file("report", target)).collect();
+    written.extend(card.iter().map(|target| file("card", target)));
     if json {
-        return Ok(print(&analysis_json(&analysed, &written))?);
+        print(&analysis_json(&analysed, &written))?;
+    } else {
+        tell(&inputs, &analysed, arguments, &written)?;
     }
+    let is_worse = |one: &Analysed<'_>| one.checked.as_ref().is_some_and(|checked| !checked.check.holds());
+    if analysed.iter().any(is_worse) { Err(Failure::worse()) } else { Ok(()) }
+}
+
+/// Everything for people: warnings, tables, files.
+fn tell(
+    inputs: &Inputs,
+    analysed: &[Analysed<'_>],
+    arguments: &AnalyzeArguments,
+    written: &[Written],
+) -> Result<(), Failure> {
     for input in &inputs.list {
         let warnings = render(input.source(), &input.warnings, Severity::Warning, colours());
         io::stderr().write_all(warnings.as_bytes())?;
     }
-    print(&analysed.iter().map(analysis_table).collect::<Vec<_>>().join("\n"))?;
-    for file in &written {
+    let mut tables = Vec::new();
+    for one in analysed {
+        let mut table = analysis_table(one);
+        for (card, result) in one.cards.iter().zip(&one.controllers).filter(|_| arguments.card) {
+            match (card, result) {
+                (Ok(card), _) => table.push_str(&card_table(card)),
+                (Err(why), Ok(analysis)) => {
+                    table.push_str(&format!("\nno loop card of {}: {why}\n", analysis.name))
+                }
+                (Err(_), Err(_)) => {}
+            }
+        }
+        table.extend(one.checked.as_ref().map(check_table));
+        tables.push(table);
+    }
+    print(&tables.join("\n"))?;
+    for file in written {
         print(&format!("\nwrote {}\n", file.path))?;
     }
     Ok(())
+}
+
+fn make_cards(analysed: &mut [Analysed<'_>], request: Request) {
+    for one in analysed {
+        one.cards = (0..one.controllers.len()).map(|index| loop_card(one.scenario, index, request)).collect();
+    }
+}
+
+fn filled(target: &FileTarget, text: &str) -> Result<crate::output::Complete, Failure> {
+    let mut draft = target.create().map_err(Failure::internal)?;
+    draft.write_all(text.as_bytes()).map_err(|error| Failure::internal(target.failed(&error)))?;
+    draft.complete().map_err(Failure::internal)
 }
 
 /// The options as a scenario: every mistake in them is found and shown as those in a file are.
@@ -149,6 +240,8 @@ fn analysed<'a>(job: &Job<'a>) -> Analysed<'a> {
         scenario,
         warnings: &job.input.warnings,
         controllers,
+        cards: Vec::new(),
+        checked: None,
     }
 }
 
@@ -181,15 +274,28 @@ fn check(analysed: &[Analysed<'_>]) -> Result<(), Failure> {
     Err(failure)
 }
 
-fn target(path: &Path, force: bool, inputs: &Inputs) -> Result<FileTarget, Problem> {
+fn target(
+    option: &str,
+    path: &Path,
+    arguments: &AnalyzeArguments,
+    inputs: &Inputs,
+) -> Result<FileTarget, Problem> {
     let name = path.display();
+    let example = if option == "--report" { "my.html" } else { "card.toml" };
     if path.as_os_str() == "-" {
-        let message = "`--report -` is not possible: the standard output has the table";
-        return Err(Problem::new("file", message).help("give a file: `--report my.html`"));
+        let message = format!("`{option} -` is not possible: the standard output has the table");
+        return Err(Problem::new("file", message).help(format!("give a file: `{option} {example}`")));
     }
-    if inputs.files.iter().any(|input| is_same_file(path, input)) {
+    if inputs.files.iter().chain(&arguments.check).any(|input| is_same_file(path, input)) {
         let message = format!("`{name}` is read by the analysis and is not overwritten");
-        return Err(Problem::new("file", message).help("give the file of `--report` another name"));
+        return Err(Problem::new("file", message).help(format!("give the file of `{option}` another name")));
     }
-    FileTarget::new(path, force)
+    if let (Some(page), Some(card)) = (&arguments.report, &arguments.save_card)
+        && is_same_file(page, card)
+        && option == "--save-card"
+    {
+        let message = format!("`--report` and `--save-card` are the same file `{name}`");
+        return Err(Problem::new("file", message).help("give one of them another name"));
+    }
+    FileTarget::new(path, arguments.force)
 }

@@ -14,7 +14,7 @@ Examples:
 
 In the source tree write `cargo sim` for `controller-sim`.
 
-Exit codes: 0 done, 2 bad input, 3 refused, 130 stopped, 1 anything else.";
+Exit codes: 0 done, 2 bad input, 3 refused, 4 a check failed, 130 stopped, 1 anything else.";
 
 pub(super) const RUN: &str = "\
 Examples:
@@ -32,10 +32,18 @@ Examples:
 pub(super) const ANALYZE: &str = "\
 Examples:
   controller-sim analyze my.toml                           each controller of a scenario or design file
-  controller-sim analyze my.toml --report my.html          with Bode and Nyquist plots
+  controller-sim analyze loop.toml --report my.html        loop card, plots
+  controller-sim analyze loop.toml --card --board microbit the loop card on the screen
+  controller-sim analyze loop.toml --save-card card.toml   its figures with bounds, to be kept beside the loop
+  controller-sim analyze loop.toml --check card.toml       does the loop still keep them? in your own CI
   controller-sim analyze my.toml --set latency=0.05
   controller-sim analyze --plant 'exp(-0.2*s)/((1+0.2*s)*(1+s))' --kp 2 --ki 1.6 --ts 0.01
-  controller-sim analyze --plant 'exp(-s)/(1+s)' --kp 0.6 --ki 0.5 --ts 0.05 --alpha 0.4 --json";
+  controller-sim analyze --plant 'exp(-s)/(1+s)' --kp 0.6 --ki 0.5 --ts 0.05 --alpha 0.4 --json
+
+The loop card is that of the law as it is flashed, f32 unless said otherwise. Its jitter margin is the lateness that every
+output may have on top of the latency, another one in each sample: sufficient for stability, by Kao and Lincoln's criterion.
+
+Exit codes: 0 done, 4 a figure does not keep the bounds of `--check` or is missing, 3 there is no stable loop, 2 bad input.";
 
 pub(super) const DEMO: &str = "\
 Examples:

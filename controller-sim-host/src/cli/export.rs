@@ -125,7 +125,10 @@ fn open_ranges(export: &Export<'_>, language: Language) -> Vec<Problem> {
 }
 
 /// The only controller, or the one with this name.
-fn chosen<'a>(list: &'a [ControllerSpec], name: Option<&str>) -> Result<&'a ControllerSpec, Problem> {
+pub(super) fn chosen<'a>(
+    list: &'a [ControllerSpec],
+    name: Option<&str>,
+) -> Result<&'a ControllerSpec, Problem> {
     let names: Vec<&str> = list.iter().map(|spec| spec.name.trim()).collect();
     let listed = || names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     match (name, list) {

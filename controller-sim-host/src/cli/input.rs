@@ -50,9 +50,21 @@ const UNCERTAINTY: Kind = Kind {
     pipe: "write it to a file first",
 };
 
+const CARD: Kind = Kind {
+    name: "loop card",
+    longest: LONGEST,
+    missing: "`controller-sim analyze loop.toml --save-card card.toml` writes one",
+    pipe: "write it to a file first",
+};
+
 /// The name and the text of the scenario at `path`; `-` is the standard input.
 pub(super) fn read(path: &Path) -> Result<(String, String), Problem> {
     read_text(path, &SCENARIO)
+}
+
+/// The name and the text of the loop card at `path`.
+pub(super) fn read_card(path: &Path) -> Result<(String, String), Problem> {
+    read_text(path, &CARD)
 }
 
 /// The name and the text of the list of processes at `path`.

@@ -217,6 +217,8 @@ impl Simulated {
             scenario: &self.scenario,
             warnings: &[],
             controllers: vec![loop_],
+            cards: Vec::new(),
+            checked: None,
         };
         report::tuning(tuning, &chapter, &analysed, command)
     }

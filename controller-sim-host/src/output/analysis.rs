@@ -1,8 +1,10 @@
 //! What `analyze` prints: tables and JSON.
 
+use super::card::{Card, Checked, Held, card_object, check_object};
 use super::json::{Place, Written, places, text};
 use super::table::format_number;
 use crate::analysis::{Analysis, Noise, Side};
+use crate::card::LoopCard;
 use crate::scenario::{Fault, Scenario};
 use controller_design::margins::Margins;
 use serde::Serialize;
@@ -22,6 +24,10 @@ pub struct Analysed<'a> {
     pub warnings: &'a [Fault],
     /// Of each controller, or its name and why there is none.
     pub controllers: Vec<Result<Analysis, (String, String)>>,
+    /// The card of each controller, or why there is none; empty when nobody asked for cards.
+    pub cards: Vec<Result<LoopCard, String>>,
+    /// What the check of a card found.
+    pub checked: Option<Checked>,
 }
 
 #[derive(Serialize)]
@@ -40,6 +46,8 @@ struct Object<'a> {
     latency: f64,
     files: Vec<&'a Written>,
     controllers: Vec<Controller<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    check: Option<Held<'a>>,
     warnings: Vec<Place<'a>>,
 }
 
@@ -51,6 +59,8 @@ struct Controller<'a> {
     unstable_poles: Option<usize>,
     continuous: Option<Form>,
     discrete: Option<Form>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    card: Option<Card<'a>>,
     warnings: &'a [String],
 }
 
@@ -116,7 +126,8 @@ pub fn analysis_json(list: &[Analysed<'_>], files: &[Written]) -> String {
 
 fn object<'a>(one: &'a Analysed<'_>, files: &'a [Written]) -> Object<'a> {
     let ts = one.scenario.ts;
-    let controllers = one.controllers.iter().map(|result| match result {
+    let card = |index: usize| one.cards.get(index).and_then(|card| card.as_ref().ok()).map(card_object);
+    let controllers = one.controllers.iter().enumerate().map(|(index, result)| match result {
         Ok(a) => Controller {
             name: &a.name,
             refused: None,
@@ -124,6 +135,7 @@ fn object<'a>(one: &'a Analysed<'_>, files: &'a [Written]) -> Object<'a> {
             unstable_poles: Some(a.unstable_poles),
             continuous: Some(form(&a.continuous, ts)),
             discrete: Some(form(&a.discrete, ts)),
+            card: card(index),
             warnings: &a.warnings,
         },
         Err((name, why)) => Controller {
@@ -133,6 +145,7 @@ fn object<'a>(one: &'a Analysed<'_>, files: &'a [Written]) -> Object<'a> {
             unstable_poles: None,
             continuous: None,
             discrete: None,
+            card: None,
             warnings: &[],
         },
     });
@@ -146,6 +159,7 @@ fn object<'a>(one: &'a Analysed<'_>, files: &'a [Written]) -> Object<'a> {
         latency: one.scenario.latency,
         files: files.iter().collect(),
         controllers: controllers.collect(),
+        check: one.checked.as_ref().map(check_object),
         warnings: places(one.name, one.text, one.warnings).collect(),
     }
 }

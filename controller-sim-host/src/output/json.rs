@@ -77,7 +77,7 @@ fn pil(result: &RunResult) -> Option<Pil<'_>> {
 /// A file that a run has written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Written {
-    /// `report`, `svg`, `csv` or `parquet`.
+    /// `report`, `card`, `svg`, `csv` or `parquet`.
     pub kind: &'static str,
     /// Its path, as it was given.
     pub path: String,

@@ -97,7 +97,8 @@ fn place(chapter: &Chapter<'_>, fault: &Fault) -> String {
     }
 }
 
-fn picture(id: &str, chapter: &Chapter<'_>) -> Markup {
+/// The picture of a run with its legend.
+pub(super) fn picture(id: &str, chapter: &Chapter<'_>) -> Markup {
     let loops = loops(chapter);
     if loops.is_empty() {
         return html! { p { "The run was not recorded: there is no picture." } };

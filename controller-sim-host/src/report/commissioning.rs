@@ -17,18 +17,20 @@ const GAIN: f64 = 2.0;
 const PHASE: f64 = 30.0;
 const SAMPLES: f64 = 10.0;
 
-/// Parameters and margins of a controller beside each other. `id` is that of the table of the margins, `of` what is spoken.
+/// Parameters and margins of a controller beside each other. `id` is that of the table of the margins, `of` what is spoken;
+/// the verdicts are left out where a loop card gives them.
 pub(super) fn card(
     id: &str,
     scenario: &Scenario,
     spec: Option<&ControllerSpec>,
     analysis: &Analysis,
     of: &str,
+    verdicts: bool,
 ) -> Markup {
     html! {
         div class="card" {
             @if let Some(spec) = spec { (parameters(&format!("{id}-parameters"), scenario, spec, of)) }
-            (margins(id, analysis, of))
+            (margins(id, analysis, of, verdicts))
         }
         @if let Some(text) = spec.and_then(|spec| quiet(scenario, spec, analysis)) { p { (text) } }
     }
@@ -96,14 +98,14 @@ fn groups(scenario: &Scenario, spec: &ControllerSpec) -> Vec<(&'static str, Vec<
 }
 
 /// The margins of the design and of the law that runs, with a verdict on the latter.
-fn margins(id: &str, analysis: &Analysis, of: &str) -> Markup {
+fn margins(id: &str, analysis: &Analysis, of: &str, verdicts: bool) -> Markup {
     let table = html! {
         table {
             thead { tr {
                 th scope="col" class="text" id=(id) { "Margins and noise" span class="spoken" { " of " (of) } }
                 th scope="col" { "continuous" }
                 th scope="col" { "sampled" }
-                th scope="col" class="text" { "verdict" }
+                @if verdicts { th scope="col" class="text" { "verdict" } }
             } }
             tbody {
                 @for row in rows(analysis) {
@@ -115,12 +117,12 @@ fn margins(id: &str, analysis: &Analysis, of: &str) -> Markup {
                         }
                         td { (continuous) }
                         td { (sampled) }
-                        td class="text" {
+                        @if verdicts { td class="text" {
                             @if let Some((good, bound)) = judged(&row, analysis) {
                                 @if good { "good" } @else { strong { "poor" } }
                                 " " span class="unit" { "(" (bound) ")" }
                             }
-                        }
+                        } }
                     }
                 }
             }

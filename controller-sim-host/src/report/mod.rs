@@ -7,6 +7,7 @@
 mod analysis;
 mod assessment;
 mod bands;
+mod card;
 mod chapter;
 mod commissioning;
 mod describe;

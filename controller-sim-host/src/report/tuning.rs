@@ -68,7 +68,7 @@ fn summary(tuning: &Tuning<'_>, chapter: &Chapter<'_>, analysed: &Analysed<'_>) 
             }
             @for (result, spec) in analysed.controllers.iter().zip(&scenario.controllers) {
                 @match result {
-                    Ok(analysis) => (card("summary-numbers", scenario, Some(spec), analysis, &analysis.name)),
+                    Ok(analysis) => (card("summary-numbers", scenario, Some(spec), analysis, &analysis.name, true)),
                     Err((name, why)) => (page::notes(&[format!("{name}: {why}")])),
                 }
             }

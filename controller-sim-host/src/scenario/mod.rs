@@ -52,6 +52,7 @@ pub use read::{Read, VERSION, read};
 pub use signal::{Between, Recording, Signal};
 pub(crate) use suggest::closest;
 pub use uncertainty::{Uncertain, uncertainty};
+pub(crate) use value::{shortened, to_f64, type_name};
 pub use write::DesignFile;
 
 use controller_core::{AdrcConfig, ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};

@@ -4,13 +4,13 @@ use super::number::{show, without_unit};
 use toml::de::DeValue;
 
 /// Text from the scenario as it may stand in a message: not too long, on one line.
-pub(super) fn shortened(text: &str) -> String {
+pub(crate) fn shortened(text: &str) -> String {
     let clean: String = text.chars().take(60).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if text.chars().count() > 60 { format!("{clean}...") } else { clean }
 }
 
 /// The number that a value is, infinite when it is larger than any.
-pub(super) fn to_f64(value: &DeValue<'_>) -> Option<f64> {
+pub(crate) fn to_f64(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Integer(n) => match i128::from_str_radix(n.as_str(), n.radix()) {
             #[allow(clippy::cast_precision_loss)] // the nearest number is what is meant
@@ -35,7 +35,7 @@ pub(super) fn number_in_text(key: &str, text: &str) -> Option<String> {
 }
 
 /// What a value is, for messages.
-pub(super) fn type_name(value: &DeValue<'_>) -> &'static str {
+pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a text",
         DeValue::Integer(_) | DeValue::Float(_) => "a number",

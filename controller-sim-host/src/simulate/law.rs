@@ -2,9 +2,9 @@
 
 use crate::scenario::{CompensatorSpec, ControllerSpec};
 use controller_core::{
-    Adrc, AdrcState, AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigError, ConfigErrors,
-    Controller, ControllerInput, ControllerNumbers, ControllerOutput, ControllerState, Mode, NoCompensator,
-    Param, PidCoefficients, Real, Reason,
+    Adrc, AdrcCoefficients, AdrcState, AnyCompensator, AnyCompensatorState, CompensatorConfig, ConfigError,
+    ConfigErrors, Controller, ControllerInput, ControllerNumbers, ControllerOutput, ControllerState, Mode,
+    NoCompensator, Param, PidCoefficients, Real, Reason,
 };
 
 type Compensated<T> = AnyCompensator<T, Vec<T>>;
@@ -152,6 +152,14 @@ impl<T: Real> AnyLaw<T> {
             Block::Plain { law, .. } => Some(law.pid().coefficients()),
             Block::Adrc { .. } => None,
             Block::Compensated { law, .. } => Some(law.pid().coefficients()),
+        }
+    }
+
+    /// The coefficients of the ADRC, if it is one.
+    pub(crate) fn adrc(&self) -> Option<AdrcCoefficients<T>> {
+        match &self.block {
+            Block::Plain { .. } | Block::Compensated { .. } => None,
+            Block::Adrc { law, .. } => Some(law.adrc().coefficients()),
         }
     }
 

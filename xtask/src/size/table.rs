@@ -60,6 +60,23 @@ pub(super) fn text(rows: &[Row], compiler: &str) -> String {
     text
 }
 
+/// What a loop card needs of it: instructions of a step, least and most over all inputs and over usual ones, bytes of law
+/// and state.
+pub(super) fn csv(rows: &[Row]) -> String {
+    let mut text = "board,block,type,least,most,usual_least,usual_most,law,state\n".to_owned();
+    for row in rows {
+        let Some(all) = row.step.all() else { continue };
+        let usual =
+            row.step.classes.iter().find(|(class, _)| class == "nominal").map_or(all, |(_, range)| *range);
+        let (board, block, number) = (row.board.name, &row.block, &row.number);
+        text.push_str(&format!(
+            "{board},{block},{number},{},{},{},{},{},{}\n",
+            all.least, all.most, usual.least, usual.most, row.law, row.state
+        ));
+    }
+    text
+}
+
 /// The first lines in which two texts differ, at most a few.
 pub(super) fn difference(old: &str, new: &str) -> String {
     const MOST: usize = 20;

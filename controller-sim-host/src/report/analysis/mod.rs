@@ -4,7 +4,8 @@ mod curves;
 mod nyquist;
 mod picture;
 
-use super::commissioning::card;
+use super::card;
+use super::commissioning;
 use super::page::{document, notes};
 use super::words;
 use crate::analysis::Analysis;
@@ -59,6 +60,13 @@ pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool, with_numb
             html! { h2 { (text) } }
         }
     };
+    let sub_heading = |text: &str| {
+        if several {
+            html! { h4 { (text) } }
+        } else {
+            html! { h3 { (text) } }
+        }
+    };
     let of = |name: &str| if several { format!("{name}, {}", title(one)) } else { name.to_owned() };
     let picture = |name: &str, panels: &[picture::Panel]| figure(&format!("{id}-{name}"), &curves, panels);
     html! {
@@ -75,8 +83,20 @@ pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool, with_numb
                     Ok(a) => {
                         (heading(&a.name))
                         (notes(&a.warnings))
+                        @let loop_card = one.cards.get(at).and_then(|card| card.as_ref().ok());
+                        @match one.cards.get(at) {
+                            Some(Ok(loop_card)) => (card::table(&format!("{id}-card-{}", at + 1), loop_card, &of(&a.name))),
+                            Some(Err(why)) => (notes(&[format!("no loop card: {why}")])),
+                            None => {}
+                        }
                         @if let Some(numbers) = &numbers {
-                            (card(&format!("{numbers}-{}", at + 1), one.scenario, one.scenario.controllers.get(at), a, &of(&a.name)))
+                            (commissioning::card(
+                                &format!("{numbers}-{}", at + 1), one.scenario, one.scenario.controllers.get(at), a,
+                                &of(&a.name), loop_card.is_none(),
+                            ))
+                        }
+                        @if let Some(loop_card) = loop_card {
+                            (card::trials(&format!("{id}-trial-{}", at + 1), loop_card, &|text| sub_heading(text)))
                         }
                     }
                     Err((name, why)) => (notes(&[format!("{name}: {why}")])),
