@@ -3,6 +3,7 @@
 mod analyze;
 mod assess;
 mod batch;
+mod card;
 mod design;
 mod export;
 mod faults;
