@@ -16,6 +16,8 @@ const ASSUMED: f64 = 1.5;
 pub(super) const BAND: f64 = 0.05;
 /// Samples in a row that the output must be at its limit.
 const HELD: usize = 5;
+/// The least part of the window that the output of an integrating plant must be there.
+const LONG: f64 = 0.05;
 /// Most times that the step of an integrating plant is doubled.
 const DOUBLINGS: usize = 24;
 
@@ -46,6 +48,9 @@ pub(super) fn at_limits<T: Real>(
     window: f64,
     precision: Precision,
 ) -> Result<AtLimits, String> {
+    if deployed.scenario.plant.poles().iter().any(|pole| pole.re > 0.0) {
+        return Err("an unstable plant runs away while its input is at a limit".to_owned());
+    }
     let (range, said) = range(deployed)?;
     match deployed.static_gain() {
         Some(gain) => beyond_reach(deployed, (range, said), gain, window, precision),
@@ -159,8 +164,7 @@ fn large_step<T: Real>(
         let tried = limited(scenario(deployed, at, 3.0 * window, events()), range);
         let mut result = simulate(&tried, precision)?;
         let trace = only(&result).map_or(&[][..], |one| &one.trace);
-        let run = trace.windows(HELD).position(|part| part.iter().all(|s| is_limited(s, range.0)));
-        let Some(first) = run else {
+        let Some(first) = held_from(trace, range.0, HELD.max(samples(&tried, LONG * window))) else {
             step *= 2.0;
             continue;
         };
@@ -188,6 +192,16 @@ fn found(
 ) -> AtLimits {
     let trial = Trial { title: "At the limits of the output", text: text.to_owned(), scenario, result };
     AtLimits { recovery, overshoot, free, range, said, trial }
+}
+
+/// Where the first stretch of `count` samples at a limit begins.
+fn held_from(trace: &[Sample], range: (f64, f64), count: usize) -> Option<usize> {
+    let mut held = 0;
+    let end = trace.iter().position(|s| {
+        held = if is_limited(s, range) { held + 1 } else { 0 };
+        held >= count
+    })?;
+    Some(end + 1 - count)
 }
 
 fn samples(scenario: &Scenario, time: f64) -> usize {

@@ -211,7 +211,8 @@ fn plain_gain<T: Real>(deployed: &Deployed<'_, T>) -> f64 {
         None => config.kp,
     };
     let gain = if gain == 0.0 { config.ki * deployed.scenario.ts } else { gain };
-    gain.abs()
+    // Without any gain nothing is amplified.
+    if gain == 0.0 { f64::INFINITY } else { gain.abs() }
 }
 
 /// `ki` of the deployed law [u/(y s)], and its share of the largest one of a PI at the same Ms.

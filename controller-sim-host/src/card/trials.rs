@@ -2,6 +2,7 @@
 
 use super::Trial;
 use super::deployed::{Deployed, Point};
+use crate::output::table::format_number;
 use crate::scenario::{Actuator, Change, Event, Initial, Noise, Scenario, Sensor, Signal};
 use crate::simulate::{COLUMNS, ControllerResult, Precision, RunOptions, RunResult, View, run};
 use controller_core::Real;
@@ -9,8 +10,8 @@ use controller_design::margins::Margins;
 
 /// Share of its largest value below which an error counts as over.
 pub(super) const OVER: f64 = 0.02;
-/// Most samples of a run.
-const MOST: f64 = 1e6;
+/// Most samples of a run: their memory stays below 100 MB.
+const MOST: f64 = 3e5;
 /// Samples of noise in the picture.
 const NOISY: f64 = 400.0;
 /// Standard deviation of that noise as a share of the step of the set-point, where the file says none.
@@ -78,9 +79,17 @@ pub(super) fn steps<T: Real>(
         });
         if over || window >= longest {
             forget(&mut result);
-            let text = "The law that is flashed on the plant of the file, without noise: a step of the set-point, then one of \
-                        the load at the plant's input."
-                .to_owned();
+            let iae: Vec<String> = only(&result)
+                .into_iter()
+                .flat_map(|one| &one.events)
+                .map(|stretch| format_number(stretch.metrics.iae))
+                .collect();
+            let end = if over { "" } else { " It is not over in the time shown." };
+            let text = format!(
+                "The law that is flashed on the plant of the file, without noise: a step of the set-point, then one of the \
+                 load at the plant's input; IAE {}.{end}",
+                iae.join(" and ")
+            );
             return Ok((window, Trial { title: "Step of set-point and load", text, scenario, result }));
         }
         window = (2.0 * window).min(longest);

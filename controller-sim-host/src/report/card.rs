@@ -33,7 +33,7 @@ pub(super) fn table(id: &str, card: &LoopCard, of: &str) -> Markup {
                 "Without a figure: "
                 @for (index, (key, why)) in card.absent.iter().enumerate() {
                     @if index > 0 { "; " }
-                    code { (key) } ", " (why)
+                    (key.replace('_', " ")) ", " (why)
                 }
                 "."
             }

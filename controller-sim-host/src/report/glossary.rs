@@ -18,7 +18,7 @@ const fn named(found: &'static str, name: &'static str, means: &'static str) -> 
     Word { found, name, means }
 }
 
-const WORDS: [Word; 60] = [
+const WORDS: [Word; 64] = [
     word("PI", "controller with a proportional and an integral part"),
     word("PID", "controller with a proportional, an integral and a derivative part"),
     word("MOMI", "magnitude optimum by multiple integration: tuned by the areas of a response"),
@@ -66,6 +66,10 @@ const WORDS: [Word; 60] = [
     word("K_PIDn", "gain of the PID from measurement noise to the output at the frequency \u{3c0}/(2 ts)"),
     word("K_DEn", "the same of the disturbance estimator or observer"),
     word("A_n", "gain from measurement noise to the output at high frequency"),
+    word("K_i", "integral gain: 1/K_i is the integral of the error after a unit step of the load"),
+    named("TV of u by noise", "TV (noise)", "total variation: sum of all moves of the controller output"),
+    word("RAM", "memory for data"),
+    word("MHz", "million cycles a second"),
     word("std", "standard deviation"),
     word("rms", "root mean square"),
     word("fit_rms", "root mean square of the residuals of the fitted model"),
