@@ -157,6 +157,8 @@ fn what_is_wrong_in_a_table_is_named() {
         (head, ", column = 2, time = \"tt\"", code::UNKNOWN_NAME, &["has no column `tt`"]),
         ("1,2\n", ", column = \"y\"", code::UNKNOWN_NAME, &["has no line with names", "give its number"]),
         ("t,y,y\n0,1,2\n", ", column = \"y\"", code::UNKNOWN_NAME, &["two columns `y`", "2 or 3"]),
+        ("t,y\nmin,degC\n1,2\n", "", code::RECORDING, &["`log.csv`, column 1 (`t`): the times are in `min`; seconds are needed", "convert them"]),
+        ("n,Zeit [ms],y\n1,2,3\n", ", time = 2, column = 3", code::RECORDING, &["column 2 (`Zeit [ms]`): the times are in `ms`", ""]),
         ("t,y\n# x\n\n1,2\n0.5,3\n", "", code::RECORDING, &["`log.csv`, line 5, column 1 (`t`): the time 0.5 is before 1", "sort the rows"]),
         ("t,y\n0,n/a\n1,2\n", "", code::RECORDING, &["line 2, column 2 (`y`): `n/a` is no number"]),
         ("0,1\n1,\n", "", code::RECORDING, &["line 2, column 2: the cell is empty", "rows may be missing"]),

@@ -11,6 +11,26 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 /// Most rows of a recording.
 const MOST_ROWS: usize = 10_000_000;
 
+/// Units of time other than seconds, in small letters.
+const OTHER_UNITS: [&str; 16] = [
+    "ns",
+    "us",
+    "\u{b5}s",
+    "\u{3bc}s",
+    "ms",
+    "msec",
+    "milliseconds",
+    "min",
+    "minute",
+    "minutes",
+    "h",
+    "hour",
+    "hours",
+    "d",
+    "day",
+    "days",
+];
+
 /// A column, as a person names it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Column {
@@ -104,12 +124,16 @@ pub(super) fn read(
         table.header_in_comment(text, width)
     };
     let [time, value] = table.columns(header.as_deref(), width, time, value)?;
+    if let Some(unit) = header.as_ref().and_then(|names| in_brackets(names.get(time)?)) {
+        table.check_seconds(unit, time, header.as_deref())?;
+    }
     let chosen = |record: &StringRecord| [time, value].map(|column| record.get(column).map(str::to_owned));
     if has_row && header.is_some() {
         // Not a single number where numbers have to be: what they are measured in.
         let no_number =
             |cell: Option<String>| cell.is_none_or(|cell| table.number(&cell).is_none() && !cell.is_empty());
         if record.position().is_some_and(|at| at.record() > 0) && chosen(&record).into_iter().all(no_number) {
+            table.check_seconds(record.get(time).unwrap_or(""), time, header.as_deref())?;
             has_row = next(&mut record)?;
         }
     }
@@ -155,6 +179,12 @@ pub(super) fn read(
     if rows.times.is_empty() { Err(table.empty()) } else { Ok(rows) }
 }
 
+/// What stands in brackets at the end of a name.
+fn in_brackets(name: &str) -> Option<&str> {
+    let [open, close] = if name.ends_with(']') { ['[', ']'] } else { ['(', ')'] };
+    name.strip_suffix(close)?.rsplit_once(open).map(|(_, unit)| unit)
+}
+
 /// The character between the cells, as the first line with any shows it.
 fn separator(text: &str) -> u8 {
     let line = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or("");
@@ -169,6 +199,23 @@ struct Table<'t> {
 impl Table<'_> {
     fn empty(&self) -> Problem {
         Problem::new(About::File, format!("`{}` has no rows", self.name))
+    }
+
+    /// Times in another unit than seconds would be taken for seconds: a unit of time that is written must be that.
+    fn check_seconds(&self, unit: &str, time: usize, header: Option<&[String]>) -> Result<(), Problem> {
+        let plain = unit.trim_matches(|c: char| c.is_whitespace() || "[]()".contains(c)).to_lowercase();
+        if !OTHER_UNITS.contains(&&*plain) {
+            return Ok(());
+        }
+        let title = header.and_then(|names| names.get(time)).map_or("", |name| name);
+        let message = format!(
+            "`{}`, column {} (`{}`): the times are in `{}`; seconds are needed",
+            self.name,
+            time + 1,
+            shortened(title),
+            shortened(unit.trim())
+        );
+        Err(Problem::new(About::File, message).help("convert them, or name a column in seconds by `time`"))
     }
 
     /// A number, infinite ones and NaN included.
