@@ -3,7 +3,8 @@
 use controller_core::Mode;
 use controller_core::plant_model::PlantModel;
 use controller_design::model::{TransferFunction, parse};
-use controller_sim_host::scenario::{Actuator, CompensatorSpec, Scenario, Sensor, code, read};
+use controller_sim_host::plant::{Heater, Nonlinear, TankLoad, TwoTank};
+use controller_sim_host::scenario::{Actuator, CompensatorSpec, Scenario, Sensor, Stiction, code, read};
 use controller_sim_host::simulate::Precision;
 
 fn scenario(middle: &str) -> Scenario {
@@ -83,9 +84,66 @@ fn sensor_and_actuator() {
          rate = 5\nresolution = 0.5\ndeadband = 0.25\nread_back = true",
     );
     assert_eq!(s.sensor, Sensor { lo: -1.0, hi: 150.5, resolution: 0.3 });
-    let actuator =
-        Actuator { lo: 0.0, hi: 100.0, rate: 5.0, resolution: 0.5, deadband: 0.25, read_back: true };
+    let actuator = Actuator {
+        lo: 0.0,
+        hi: 100.0,
+        rate: 5.0,
+        resolution: 0.5,
+        deadband: 0.25,
+        stiction: None,
+        read_back: true,
+    };
     assert_eq!(s.actuator, actuator);
+}
+
+#[test]
+fn a_valve_that_sticks() {
+    let stiction = |keys: &str| {
+        scenario(&format!("plant.tf = \"1/(1+s)\"\nactuator.stiction = {keys}")).actuator.stiction
+    };
+    assert_eq!(stiction("{ band = 5, jump = 2.5 }"), Some(Stiction { band: 5.0, jump: 2.5 }));
+    assert_eq!(stiction("{ band = 0.5 }"), Some(Stiction { band: 0.5, jump: 0.0 }));
+}
+
+#[test]
+fn plants_that_are_not_linear() {
+    let s = scenario("initial.setpoint = 25.0\nplant.two_tank = {}");
+    assert_eq!(s.nonlinear, Some(Nonlinear::TwoTank(TwoTank::default())));
+    let s = scenario(
+        "initial.setpoint = 9.0\n[plant.two_tank]\narea = 1\nheight = 10.0\ndrop = 3\ndrain = 4\nvalve = 55\nsupply = 6\n\
+         pump = 7\npump_start = 0.5\nfeed_area = 8\nfeed_level = 9\ndead_time = 0.25\ndisturbance = \"input\"",
+    );
+    let tank = TwoTank {
+        area: 1.0,
+        height: 10.0,
+        drop: 3.0,
+        drain: 4.0,
+        valve: 55.0,
+        supply: 6.0,
+        pump: 7.0,
+        pump_start: 0.5,
+        feed_area: 8.0,
+        feed_level: 9.0,
+        dead_time: 0.25,
+        load: TankLoad::Input,
+    };
+    assert_eq!(s.nonlinear, Some(Nonlinear::TwoTank(tank)));
+    let heater = |keys: &str| {
+        scenario(&format!("plant.heater = {{ gain = 2, tau_heat = 3, tau_cool = 4{keys} }}")).nonlinear
+    };
+    let plain = Heater {
+        gain: 2.0,
+        gain_cool: 2.0,
+        tau_heat: 3.0,
+        tau_cool: 4.0,
+        ambient: 0.0,
+        sensor_lag: 0.0,
+        dead_time: 0.0,
+    };
+    assert_eq!(heater(""), Some(Nonlinear::Heater(plain)));
+    let full = Heater { gain_cool: 0.0, ambient: -5.0, sensor_lag: 0.5, dead_time: 0.75, ..plain };
+    let keys = ", gain_cool = 0, ambient = -5, sensor_lag = 0.5, dead_time = 0.75";
+    assert_eq!(heater(keys), Some(Nonlinear::Heater(full)));
 }
 
 #[test]

@@ -106,6 +106,7 @@ pub fn from_rest(
         latency: 0.0,
         substeps: 20,
         plant: transfer_function(plant),
+        nonlinear: None,
         inner_plant: None,
         initial: Initial::default(),
         events: vec![Event { at: 0.0, label: String::new(), changes: vec![change], controller: None }],

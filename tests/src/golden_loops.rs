@@ -201,6 +201,7 @@ fn actuator(from: &Value) -> Actuator {
         rate: number(from, "rate", f64::INFINITY),
         resolution: number(from, "resolution", 0.0),
         deadband: number(from, "deadband", 0.0),
+        stiction: None,
         read_back: from.get("read_back").and_then(Value::as_bool).unwrap_or(false),
     }
 }

@@ -93,6 +93,10 @@ pub fn analyse(scenario: &Scenario, index: usize) -> Result<Analysis, Reason> {
         sampled,
     };
     analysis.warnings = warnings::of(&analysis, pid);
+    if let Some(plant) = &scenario.nonlinear {
+        let start = scenario.initial.setpoint;
+        analysis.warnings.insert(0, format!("the {} is not linear: {}", plant.name(), plant.validity(start)));
+    }
     Ok(analysis)
 }
 

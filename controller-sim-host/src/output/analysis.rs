@@ -2,7 +2,7 @@
 
 use super::card::{Card, Checked, Held, card_object, check_object};
 use super::json::{Place, Written, places, text};
-use super::table::format_number;
+use super::table::{format_number, plant_text};
 use crate::analysis::{Analysis, Noise, Side};
 use crate::card::LoopCard;
 use crate::scenario::{Fault, Scenario};
@@ -154,7 +154,7 @@ fn object<'a>(one: &'a Analysed<'_>, files: &'a [Written]) -> Object<'a> {
         scenario: one.name,
         title: &one.scenario.title,
         case: one.case,
-        plant: one.scenario.plant.to_string(),
+        plant: plant_text(one.scenario),
         ts,
         latency: one.scenario.latency,
         files: files.iter().collect(),
@@ -219,7 +219,7 @@ pub fn analysis_table(one: &Analysed<'_>) -> String {
         out.push_str(&format!("{}\n", title.join(": ")));
     }
     let (ts, latency) = (one.scenario.ts, one.scenario.latency);
-    out.push_str(&format!("plant {}\nts = {ts} s, latency = {latency} s\n", one.scenario.plant));
+    out.push_str(&format!("plant {}\nts = {ts} s, latency = {latency} s\n", plant_text(one.scenario)));
     for result in &one.controllers {
         match result {
             Err((name, why)) => out.push_str(&format!("\n{name}\n  {why}\n")),

@@ -1,6 +1,6 @@
 //! JSON for programs: one object, its keys in a fixed order, numbers finite or null.
 
-use super::table::remarks;
+use super::table::{plant_text, remarks};
 use super::{Chapter, Problem, Trouble, precision_name};
 use crate::pil::{Compared, Difference};
 use crate::scenario::Fault;
@@ -203,7 +203,7 @@ fn run<'a>(chapter: &Chapter<'a>, index: usize, files: &'a [Written]) -> Run<'a>
         scenario: chapter.name,
         title: &scenario.title,
         case: chapter.case,
-        plant: scenario.plant.to_string(),
+        plant: plant_text(scenario),
         ts: scenario.ts,
         duration: scenario.duration,
         latency: scenario.latency,

@@ -2,6 +2,7 @@
 
 use super::{Chapter, precision_name};
 use crate::pil::{Compared, Difference};
+use crate::scenario::Scenario;
 use crate::simulate::{EventKind, Metrics, RunResult};
 
 pub(crate) const COLUMNS: [&str; 6] = ["IAE", "ISE", "ITAE", "IE", "e_max", "TV"];
@@ -29,7 +30,7 @@ pub fn run_table(chapter: &Chapter<'_>) -> String {
     }
     text.push_str(&format!(
         "plant {}\nts = {} s, {} s, {}\n",
-        scenario.plant,
+        plant_text(scenario),
         scenario.ts,
         scenario.duration,
         precision_name(chapter.precision)
@@ -152,6 +153,14 @@ pub(crate) fn best(block: &Block<'_>) -> [Option<String>; 6] {
         *best = least.filter(|_| !all_equal);
     }
     columns
+}
+
+/// The plant of a scenario: its expression, or what it is and its linear model where the run starts.
+pub(crate) fn plant_text(scenario: &Scenario) -> String {
+    let Some(plant) = &scenario.nonlinear else { return scenario.plant.to_string() };
+    let at = crate::scenario::show_short(scenario.initial.setpoint);
+    let model = rounded_numbers(&scenario.plant.to_string());
+    format!("{}; linear model at {at}: {model}", plant.name())
 }
 
 /// An expression with its numbers rounded to six digits: a fitted one has more than anybody reads.

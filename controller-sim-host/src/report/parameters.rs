@@ -2,8 +2,9 @@
 
 use super::words;
 use crate::output::precision_name;
-use crate::output::table::rounded_numbers;
-use crate::scenario::{Actuator, CompensatorSpec, ControllerSpec, Scenario, Sensor, show_short};
+use crate::output::table::{plant_text, rounded_numbers};
+use crate::plant::Nonlinear;
+use crate::scenario::{Actuator, CompensatorSpec, ControllerSpec, Scenario, Sensor, Stiction, show_short};
 use crate::simulate::Precision;
 use controller_core::plant_model::{Factor, PlantModel};
 use controller_core::{
@@ -26,7 +27,10 @@ const UNSET: f64 = 1e6;
 pub(super) fn shared(scenario: &Scenario, precision: Precision) -> Vec<(&'static str, String)> {
     let [y, u] = [&scenario.units.y, &scenario.units.u].map(|unit| words::unit(unit));
     let with = |x: f64, unit: &str| format!("{} {unit}", show_short(x)).trim_end().to_owned();
-    let mut list = vec![("Plant", rounded_numbers(&scenario.plant.to_string()))];
+    let mut list = vec![("Plant", rounded_numbers(&plant_text(scenario)))];
+    if let Some(plant) = &scenario.nonlinear {
+        list.push(("Parameters of the plant", joined(&nonlinear(plant))));
+    }
     if let Some(inner) = &scenario.inner_plant {
         list.push(("Inner part of the plant", rounded_numbers(&inner.to_string())));
     }
@@ -54,6 +58,12 @@ pub(super) fn shared(scenario: &Scenario, precision: Precision) -> Vec<(&'static
     list
 }
 
+/// Names with values, units of the format.
+fn nonlinear(plant: &Nonlinear) -> Vec<String> {
+    let parameters = plant.parameters().into_iter();
+    parameters.map(|(name, value, unit)| format!("{name} {} {unit}", show_short(value))).collect()
+}
+
 fn sensor(sensor: &Sensor, unit: &str) -> String {
     let mut parts = range(sensor.lo, sensor.hi, unit);
     if sensor.resolution > 0.0 {
@@ -75,6 +85,9 @@ fn actuator(actuator: &Actuator, unit: &str) -> String {
         if value > 0.0 {
             parts.push(format!("{name} {} {unit}", show_short(value)));
         }
+    }
+    if let Some(Stiction { band, jump }) = actuator.stiction {
+        parts.push(format!("stiction: band {}, jump {} {unit}", show_short(band), show_short(jump)));
     }
     parts.push(if actuator.read_back { "read back" } else { "not read back" }.to_owned());
     joined(&parts)

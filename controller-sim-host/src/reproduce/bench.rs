@@ -99,6 +99,7 @@ impl<'a> Bench<'a> {
             latency: 0.0,
             substeps: experiment.substeps,
             plant: experiment.plant.clone(),
+            nonlinear: None,
             inner_plant: None,
             initial: Initial::default(),
             events: vec![event],

@@ -155,6 +155,9 @@ impl Draft {
             inner.fulfil(part, ts, latency, log);
         }
         self.fulfil(&plant.whole, ts, latency, log);
+        if let (Some(_), Some(wish)) = (&plant.nonlinear, &self.wish) {
+            log.warn(wish.of_linear_model(&plant.whole));
+        }
     }
 
     fn fulfil(&mut self, plant: &TransferFunction, ts: f64, latency: f64, log: &Log<'_>) {

@@ -5,6 +5,7 @@ use super::number::Allowed;
 use super::places::Places;
 use super::table::Table;
 use super::{CompensatorSpec, ControllerSpec};
+use crate::output::table::rounded_numbers;
 use controller_core::Param;
 use controller_design::Refusal;
 use controller_design::design::{
@@ -133,6 +134,16 @@ impl Wish {
         let warn =
             |text: String| Fault::new(code::DESIGN, self.span.clone(), format!("`{}`: {text}", self.name));
         Ok(made.warnings.iter().map(|warning| warn(warning.to_string())).collect())
+    }
+
+    /// The warning that the rule knows the plant only where the run starts.
+    pub(super) fn of_linear_model(&self, plant: &TransferFunction) -> Fault {
+        let message = format!(
+            "`{}`: for the plant's linear model at the start, {}",
+            self.name,
+            rounded_numbers(&plant.to_string())
+        );
+        Fault::new(code::DESIGN, self.span.clone(), message)
     }
 
     fn refused(&self, refusal: &Refusal) -> Fault {

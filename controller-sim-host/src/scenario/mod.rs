@@ -17,6 +17,7 @@ mod key_path;
 mod library;
 mod log;
 mod models;
+mod nonlinear;
 mod number;
 mod oddities;
 mod override_key;
@@ -55,6 +56,7 @@ pub use uncertainty::{Uncertain, uncertainty};
 pub(crate) use value::{shortened, to_f64, type_name};
 pub use write::DesignFile;
 
+use crate::plant::Nonlinear;
 use controller_core::{AdrcConfig, ControllerConfig, EstimatorConfig, Mode, ObserverConfig, PidConfig};
 use controller_design::model::TransferFunction;
 
@@ -75,8 +77,11 @@ pub struct Scenario {
     pub latency: f64,
     /// Steps per sample for the metrics and the trace between samples, 1 or more.
     pub substeps: usize,
-    /// The plant that is simulated, from the output of the actuator to the measurement.
+    /// The plant that is simulated, from the output of the actuator to the measurement. Of one that is not linear, its linear
+    /// model at [`initial`](Self::initial).
     pub plant: TransferFunction,
+    /// A plant that is not linear: what is simulated in place of [`plant`](Self::plant).
+    pub nonlinear: Option<Nonlinear>,
     /// The part of the plant that the actuator drives first, when it is measured on its own: what the secondary loop
     /// of a cascade controls. [`plant`](Self::plant) is the whole, this part included.
     pub inner_plant: Option<TransferFunction>,
@@ -139,8 +144,8 @@ impl Default for Sensor {
 }
 
 /// An actuator. Every sample it takes the controller's output, moved into its range; keeps its position when that
-/// differs by no more than the dead band; goes towards it at most as fast as its rate; and stands at a multiple of its
-/// resolution.
+/// differs by no more than the dead band; goes towards it at most as fast as its rate; its stem follows with its stiction;
+/// and stands at a multiple of its resolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Actuator {
     /// Lowest output it accepts \[u\].
@@ -153,6 +158,8 @@ pub struct Actuator {
     pub resolution: f64,
     /// Changes up to this size do not move it \[u\].
     pub deadband: f64,
+    /// How the stem sticks; `None`: it does not.
+    pub stiction: Option<Stiction>,
     /// The controller is told what was accepted.
     pub read_back: bool,
 }
@@ -160,8 +167,22 @@ pub struct Actuator {
 impl Default for Actuator {
     fn default() -> Self {
         let (lo, hi) = (f64::NEG_INFINITY, f64::INFINITY);
-        Self { lo, hi, rate: f64::INFINITY, resolution: 0.0, deadband: 0.0, read_back: false }
+        Self { lo, hi, rate: f64::INFINITY, resolution: 0.0, deadband: 0.0, stiction: None, read_back: false }
     }
+}
+
+/// A valve that sticks: the model of He, Wang, Pottmann and Qin (2007) with two parameters, here the stick band and the
+/// slip jump of Choudhury, Thornhill and Shah (2005). The static friction of the former is `(band + jump)/2`, its kinetic
+/// friction `(band - jump)/2`.
+///
+/// The stem stays while the signal is no further from it than the static friction; then it slips to the kinetic friction
+/// from the signal. After a turn, the signal goes through the whole band before the stem moves, and the stem then jumps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stiction {
+    /// What the signal has to go through after a turn before the stem moves (dead band and stick band) \[u\].
+    pub band: f64,
+    /// How far the stem jumps when it comes loose, at most `band`; 0: pure play (backlash) \[u\].
+    pub jump: f64,
 }
 
 /// Something that happens at a time.

@@ -5,9 +5,10 @@ use super::fault::{Fault, code};
 use super::number::Allowed;
 use super::table::{Located, Table};
 use controller_design::model::{MAX_DEGREE, Polynomial, TransferFunction, parse};
+use std::ops::Range;
 
 /// The keys of which one says what a model is.
-const FORMS: [&str; 5] = ["tf", "num", "fopdt", "sopdt", "ipdt"];
+pub(super) const FORMS: [&str; 5] = ["tf", "num", "fopdt", "sopdt", "ipdt"];
 
 const EXAMPLES: &str =
     "`tf = \"exp(-0.2*s)/(1+s)\"`, or `fopdt = { gain = 1.0, tau = 1.0, dead_time = 0.2 }`";
@@ -60,12 +61,22 @@ fn several(table: &Table<'_>, given: &[&'static str]) {
         table.missing_one_of(&["tf", "num", "den", "fopdt", "sopdt", "ipdt"], EXAMPLES);
         return;
     };
+    let [one, other] = [(*first, first_at.clone()), (*second, second_at.clone())];
+    two_plants(table, one, other);
+}
+
+/// Reports two plants, each with the place of its key. Their own mistakes are not looked for.
+pub(super) fn two_plants(
+    table: &Table<'_>,
+    (first, first_at): (&str, Range<usize>),
+    (second, second_at): (&str, Range<usize>),
+) {
     let message =
         format!("`{}` and `{}` are two plants; one of them is needed", table.name(first), table.name(second));
-    let fault = Fault::new(code::CONFLICT, second_at.clone(), message).help("remove one of the two");
-    table.log.fault(fault.related(first_at.clone(), "the other one"));
-    // Their own mistakes are not looked for; the keys are known all the same.
-    for key in FORMS.into_iter().chain(["den"]) {
+    let fault = Fault::new(code::CONFLICT, second_at, message).help("remove one of the two");
+    table.log.fault(fault.related(first_at, "the other one"));
+    // The keys are known all the same.
+    for key in FORMS.into_iter().chain(["den", "dead_time"]) {
         let _ = table.span(key);
     }
 }

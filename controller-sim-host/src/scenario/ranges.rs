@@ -244,6 +244,10 @@ fn initial_outputs(scenario: &Scenario, spec: &ControllerSpec) -> [f64; 2] {
         if integrators > 0 { 0.0 } else { scenario.initial.setpoint / gain }
     };
     let plant = &scenario.plant;
+    if let Some(nonlinear) = &scenario.nonlinear {
+        let rest = nonlinear.rest(scenario.initial.setpoint, scenario.initial.disturbance);
+        return [rest.map_or(0.0, |(_, u0)| u0); 2];
+    }
     let driving = at_rest(plant.integrators(), plant.gain()) - scenario.initial.disturbance;
     match &scenario.inner_plant {
         Some(inner) if spec.secondary.is_some() => {

@@ -8,7 +8,7 @@ use super::include::{self, Roots};
 use super::library::Library;
 use super::log::{Log, MOST as MOST_FAULTS};
 use super::oddities::{self, Tables};
-use super::plants::Plant;
+use super::plants::{Plant, Written};
 use super::sources::Sources;
 use super::table::Table;
 use super::trial::{self, Context};
@@ -157,8 +157,10 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
     let latency = run.latency.as_ref().map_or(0.0, |latency| latency.value);
     // Its length was reported: the sums with it are not reported again.
     let summand = if run.latency_is_long { 0.0 } else { latency };
-    let plant = plants::read(roots.of("plant"), run.ts.as_ref(), summand);
-    let initial = surroundings::initial(roots.of("initial"), plant.as_ref().map(|plant| &plant.actual));
+    let written = plants::read(roots.of("plant"), run.ts.as_ref(), summand);
+    let start = surroundings::initial(roots.of("initial"), written.as_ref().and_then(Written::linear));
+    let step = run.ts.as_ref().map(|ts| ts.value / run.substeps as f64);
+    let plant = written.and_then(|written| written.at(&start, step, log));
     let noise = surroundings::noise(roots.of("noise"));
     let sensor = surroundings::sensor(roots.of("sensor"));
     let actuator = surroundings::actuator(roots.of("actuator"));
@@ -195,8 +197,9 @@ fn read_roots(roots: Roots<'_>, input: &Input<'_>) -> Option<Scenario> {
         latency,
         substeps: run.substeps,
         plant: plant.actual,
+        nonlinear: plant.nonlinear,
         inner_plant: plant.parts.map(|[inner, _]| inner),
-        initial,
+        initial: start.initial,
         events: events.iter().map(|placed| placed.event.clone()).collect(),
         controllers,
         noise,

@@ -4,16 +4,30 @@ use super::fault::{Fault, code};
 use super::number::Allowed;
 use super::sections::signal;
 use super::table::Table;
-use super::{Actuator, Initial, Noise, Sensor};
+use super::{Actuator, Initial, Noise, Sensor, Stiction};
 use controller_design::model::TransferFunction;
+use std::ops::Range;
+
+const STICTION: &str = "`stiction = { band = 5.0, jump = 2.0 }`";
 
 /// A step of a converter: above 0, or 0 for none.
 const RESOLUTION: Allowed = Allowed::new(0.0, 1e12, "");
 
+/// Where a run starts.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Start {
+    pub(super) initial: Initial,
+    /// Where the set-point is written.
+    pub(super) setpoint: Option<Range<usize>>,
+    /// Whether something about it was reported.
+    pub(super) is_faulty: bool,
+}
+
 /// `[initial] setpoint, disturbance`.
-pub(super) fn initial(root: &Table<'_>, plant: Option<&TransferFunction>) -> Initial {
+pub(super) fn initial(root: &Table<'_>, plant: Option<&TransferFunction>) -> Start {
+    let before = root.log.count();
     let Some(table) = root.table("initial", "`[initial]` and below it `setpoint = 20.0`") else {
-        return Initial::default();
+        return Start { is_faulty: root.log.count() > before, ..Start::default() };
     };
     let setpoint = signal(&table, "setpoint").unwrap_or(0.0);
     let disturbance = signal(&table, "disturbance").unwrap_or(0.0);
@@ -26,8 +40,10 @@ pub(super) fn initial(root: &Table<'_>, plant: Option<&TransferFunction>) -> Ini
         );
         root.log.fault(Fault::new(code::CONFLICT, span, message).help("leave it out"));
     }
+    let place = table.span("setpoint");
     table.finish();
-    Initial { setpoint, disturbance }
+    let initial = Initial { setpoint, disturbance };
+    Start { initial, setpoint: place, is_faulty: root.log.count() > before }
 }
 
 /// `[noise] std, seed`.
@@ -54,7 +70,7 @@ pub(super) fn sensor(root: &Table<'_>) -> Sensor {
     sensor
 }
 
-/// `[actuator] lo, hi, rate, resolution, deadband, read_back`.
+/// `[actuator] lo, hi, rate, resolution, deadband, stiction, read_back`.
 pub(super) fn actuator(root: &Table<'_>) -> Actuator {
     let mut actuator = Actuator::default();
     let Some(table) = root.table("actuator", "`[actuator]` and below it `lo = 0.0` and `hi = 100.0`") else {
@@ -69,11 +85,48 @@ pub(super) fn actuator(root: &Table<'_>) -> Actuator {
         actuator.deadband = deadband.value;
         check_width(&table, "deadband", deadband.value, actuator.lo, actuator.hi, "it never moves");
     }
+    if let Some(part) = table.table("stiction", STICTION) {
+        actuator.stiction = stiction(part, &actuator);
+    }
     if let Some(read_back) = table.flag("read_back") {
         actuator.read_back = read_back.value;
     }
     table.finish();
     actuator
+}
+
+/// `stiction = { band, jump }`.
+fn stiction(part: Table<'_>, actuator: &Actuator) -> Option<Stiction> {
+    if part.span("band").is_none() {
+        part.missing("band", "how far the signal turns before the stem moves: `band = 5.0`");
+    }
+    let band = part.number_in("band", Allowed::new(0.0, 1e12, ""));
+    let jump = match part.span("jump") {
+        Some(_) => part.number_in("jump", Allowed::new(0.0, 1e12, "")).map(|jump| jump.value),
+        None => Some(0.0),
+    };
+    check_width(
+        &part,
+        "band",
+        band.as_ref().map_or(0.0, |band| band.value),
+        actuator.lo,
+        actuator.hi,
+        "it never moves",
+    );
+    if let (Some(band), Some(jump), Some(span)) = (&band, jump, part.span("jump"))
+        && jump > band.value
+    {
+        let message = format!(
+            "`{} = {}` must not be above `{} = {}`: the stem would overshoot the signal",
+            part.name("jump"),
+            part.log.slice(&span),
+            part.name("band"),
+            part.log.slice(&band.span)
+        );
+        part.log.fault(Fault::new(code::CONFLICT, span, message).related(band.span.clone(), "the band"));
+    }
+    part.finish();
+    Some(Stiction { band: band?.value, jump: jump? })
 }
 
 /// `lo` and `hi`, infinite when they are not written.

@@ -1,6 +1,7 @@
 //! The plant side of a sampled loop: held output, latency, dead time, disturbance, exactly between the samples.
 
 use super::curve::{Curve, SAME};
+use super::delay::{self, Delay};
 use crate::plant::{Input, LinearPlant, StateSpace, Wave};
 use crate::scenario::Signal;
 use controller_design::model::TransferFunction;
@@ -37,11 +38,7 @@ pub struct ClosedLoop {
     plant: LinearPlant,
     ts: f64,
     grid: Vec<Grid>,
-    /// Outputs that have not arrived yet, as a ring; one more than the delay for the part of a sample before the new
-    /// output arrives.
-    line: Vec<f64>,
-    /// Where the next output is written; the oldest is there.
-    write: usize,
+    delay: Delay,
     disturbance: Curve,
     waves: Vec<Wave>,
     /// Number of this sample: whole, as a float since it is a time at every step.
@@ -63,17 +60,18 @@ impl ClosedLoop {
     ) -> Option<(Self, f64)> {
         let system = StateSpace::new(plant, ts);
         let (x, w0) = system.rest(y0)?;
-        let delay = (plant.dead_time() + latency) / ts;
-        let whole = if (delay - delay.round()).abs() < SAME { delay.round() } else { delay.floor() };
-        let fraction = if whole == delay.floor() && delay - whole >= SAME { delay - whole } else { 0.0 };
         let u0 = w0 - d0;
+        let (delay, fraction) = Delay::new((plant.dead_time() + latency) / ts, u0);
         let disturbance = Curve::new(d0, disturbances, plant.dead_time(), ts);
         let frequencies = disturbance.frequencies();
         let waves = vec![Wave::default(); frequencies.len()];
         let mut plant = LinearPlant::with_waves(system, x, frequencies);
-        let grid = grid(ts, substeps.max(1), fraction, &mut plant);
-        let line = vec![u0; whole as usize + 2];
-        Some((Self { plant, ts, grid, line, write: 0, disturbance, waves, sample: 0.0, w_before: w0 }, u0))
+        let with_number = |step: delay::Step| {
+            let delay::Step { start, h, new_output } = step;
+            Grid { start, h, index: plant.prepare(h), new_output }
+        };
+        let grid = delay::grid(ts, substeps.max(1), fraction).into_iter().map(with_number).collect();
+        Some((Self { plant, ts, grid, delay, disturbance, waves, sample: 0.0, w_before: w0 }, u0))
     }
 
     /// The measurement of this sample, before its output acts \[y\].
@@ -91,7 +89,7 @@ impl ClosedLoop {
     /// Applies `u` \[u\] and moves to the next sample; `each` sees the output between the samples.
     #[inline]
     pub fn hold(&mut self, u: f64, mut each: impl FnMut(SubStep)) {
-        let (arrived, before) = self.push(u);
+        let (arrived, before) = self.delay.push(u);
         let k = self.sample;
         self.sample += 1.0;
         // Nothing begins before the next sample and no sine runs: the usual sample, without a question at each step.
@@ -117,19 +115,6 @@ impl ClosedLoop {
             let output = if step.new_output { arrived } else { before };
             self.advance_over_breaks(k, step, output, each);
         }
-    }
-
-    /// Puts `u` into the line: the output that arrives within this sample, and the one before it.
-    #[inline]
-    fn push(&mut self, u: f64) -> (f64, f64) {
-        let size = self.line.len();
-        self.line[self.write] = u;
-        // The oldest but one arrives; it was written `size - 2` samples ago.
-        let wrap = |i: usize| if i >= size { i - size } else { i };
-        let oldest = wrap(self.write + 1);
-        let (before, arrived) = (self.line[oldest], self.line[wrap(oldest + 1)]);
-        self.write = oldest;
-        (arrived, before)
     }
 
     /// A step of the grid, divided where the disturbance breaks.
@@ -178,25 +163,4 @@ impl ClosedLoop {
         self.w_before = value + slope * h + sum(&self.waves);
         each(SubStep { t0, y0, t1: t0 + h, y1: self.plant.output(self.w_before) });
     }
-}
-
-/// The steps inside one sample: `substeps` equal ones, that in which the new output arrives divided there.
-fn grid(ts: f64, substeps: usize, fraction: f64, plant: &mut LinearPlant) -> Vec<Grid> {
-    let whole = ts / substeps as f64;
-    let mut steps = Vec::new();
-    let mut add = |start: f64, h: f64, new_output: bool| {
-        let index = plant.prepare(h);
-        steps.push(Grid { start, h, index, new_output });
-    };
-    for j in 0..substeps {
-        let (start, end) = (j as f64 / substeps as f64, (j + 1) as f64 / substeps as f64);
-        if fraction > start + SAME && fraction < end - SAME {
-            let first = (fraction - start) * ts;
-            add(start, first, false);
-            add(fraction, whole - first, true);
-        } else {
-            add(start, whole, start >= fraction - SAME);
-        }
-    }
-    steps
 }

@@ -247,6 +247,15 @@ impl Curve {
         }
     }
 
+    /// `value` and the sines that are on at the instant `s`, in samples.
+    pub(super) fn with_sines(&self, s: f64, mut value: f64) -> f64 {
+        let t = s * self.ts - self.delay;
+        for (sine, _) in self.sines.iter().zip(&self.on).filter(|(_, on)| **on) {
+            value += sine.amplitude * libm::sin(sine.omega * (t - sine.start) + sine.phase);
+        }
+        value
+    }
+
     /// Whether there is any sine.
     pub(super) fn has_sines(&self) -> bool {
         !self.sines.is_empty()
@@ -263,14 +272,8 @@ impl Curve {
         while self.next <= s + SAME {
             self.enter_next();
         }
-        let mut value = self.now.value(s, self.ts);
-        if self.has_sines() {
-            let t = s * self.ts - self.delay;
-            for (sine, _) in self.sines.iter().zip(&self.on).filter(|(_, on)| **on) {
-                value += sine.amplitude * libm::sin(sine.omega * (t - sine.start) + sine.phase);
-            }
-        }
-        value
+        let value = self.now.value(s, self.ts);
+        if self.has_sines() { self.with_sines(s, value) } else { value }
     }
 }
 

@@ -109,7 +109,7 @@ pub enum RunError {
         /// Every fault.
         faults: Box<ConfigErrors>,
     },
-    /// The plant cannot rest at the initial set-point: it has a zero at `s = 0`.
+    /// The plant cannot rest at the initial set-point: it has a zero at `s = 0`, or nothing holds it there.
     NoRest {
         /// The set-point asked for \[y\].
         setpoint: f64,
@@ -121,6 +121,11 @@ pub enum RunError {
         /// What is wrong with it.
         error: LinkError,
     },
+    /// A plant that is not linear moves too fast for the integrator.
+    Stuck {
+        /// From when on \[s\].
+        t: f64,
+    },
     /// It was stopped from outside.
     Stopped,
 }
@@ -130,7 +135,13 @@ impl std::fmt::Display for RunError {
         match self {
             Self::Controller { index, faults } => write!(f, "controller {}: {faults}", index + 1),
             Self::NoRest { setpoint } => {
-                write!(f, "a plant with a zero at s = 0 cannot rest at the set-point {setpoint}")
+                write!(f, "the plant cannot rest at the set-point {setpoint}")
+            }
+            Self::Stuck { t } => {
+                write!(
+                    f,
+                    "the plant moves too fast for the integrator from {t} s on: choose a shorter `ts` or more `substeps`"
+                )
             }
             Self::Board { index, error } => write!(f, "controller {}: {error}", index + 1),
             Self::Stopped => f.write_str("stopped"),
@@ -144,7 +155,7 @@ impl std::error::Error for RunError {}
 /// moves exactly between the samples; the controllers are the laws of `controller-core` in the number type asked for.
 ///
 /// # Errors
-/// A controller whose law cannot be built; a plant that cannot rest at the initial set-point.
+/// A controller whose law cannot be built; a plant that cannot rest at the initial set-point, or cannot be integrated.
 pub fn run(scenario: &Scenario, options: RunOptions) -> Result<RunResult, RunError> {
     run_with(scenario, options, &Control::new(), None)
 }

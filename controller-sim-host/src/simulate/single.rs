@@ -1,11 +1,11 @@
 //! The run of one controller, sample by sample.
 
 use super::actuator::Positioner;
-use super::closed_loop::ClosedLoop;
 use super::control::{Control, Sink};
 use super::curve::Curve;
+use super::plant_side::PlantSide;
 use super::record::Record;
-use super::remarks::Watch;
+use super::remarks::{Remark, Watch};
 use super::run::{ControllerResult, InnerSample, RunError, RunOptions, Sample};
 use super::secondary::{Secondary, Timing};
 use super::sensor::{Measuring, Replay};
@@ -25,7 +25,7 @@ struct Loop<T: Real> {
     input: ControllerInput<T>,
     output: ControllerOutput<T>,
     secondary: Option<Secondary<T>>,
-    plant: ClosedLoop,
+    plant: PlantSide,
     /// The local and the remote set-point.
     setpoints: [Curve; 2],
     measuring: Measuring,
@@ -68,10 +68,8 @@ impl<T: Real> Loop<T> {
             Change::Disturbance(signal) => Some(signal),
             _ => None,
         });
-        let rest = (initial.setpoint, initial.disturbance);
         let (latency, substeps) = (scenario.latency, scenario.substeps);
-        let (plant, u0) = ClosedLoop::new(&scenario.plant, ts, latency, substeps, rest, &disturbances)
-            .ok_or_else(|| no_rest.clone())?;
+        let (plant, u0) = PlantSide::new(scenario, &disturbances).ok_or_else(|| no_rest.clone())?;
         let secondary = match (&spec.secondary, &scenario.inner_plant) {
             (Some(inner), Some(part)) => {
                 let timing = Timing { ts, latency, substeps, pil };
@@ -290,6 +288,9 @@ pub(super) fn run_one<T: Real>(
                 if control.is_stopped() {
                     return Err(RunError::Stopped);
                 }
+                if let Some(t) = control_loop.plant.stuck() {
+                    return Err(RunError::Stuck { t });
+                }
             }
             while let Some((_, event)) = events.next_if(|(due, _)| *due <= k) {
                 if event.controller.is_none_or(|only| only == index) {
@@ -350,7 +351,11 @@ pub(super) fn run_one<T: Real>(
     }
     control.add(count % CHECKED_EVERY);
     let (events, total) = stretches.finish();
-    let remarks = watch.finish(scenario.noise.map_or(0.0, |n| n.std));
+    if let Some(t) = control_loop.plant.stuck() {
+        return Err(RunError::Stuck { t });
+    }
+    let mut remarks = watch.finish(scenario.noise.map_or(0.0, |n| n.std));
+    remarks.extend(control_loop.plant.remarks().into_iter().map(|text| Remark { text }));
     let name = spec.name.clone();
     let pil = control_loop.finish().map_err(|error| RunError::Board { index, error })?;
     Ok(ControllerResult { name, events, total, trace: samples, record, inner: inner_record, remarks, pil })

@@ -30,5 +30,10 @@ pub(crate) const CASES: &[Case] = &[
     (&[(VERSION, "version = 1\nactuator = { deadband = -0.5, resolution = nan }")], &[("out-of-range", 2, 25, "`actuator.deadband = -0.5`", ""), ("out-of-range", 2, 44, "`actuator.resolution = nan` is not a finite number", "")]),
     (&[(VERSION, "version = 1\nactuator = { lo = 0, hi = 1, deadband = 2 }")], &[("conflict", 2, 41, "`actuator.deadband = 2` is wider than the range", "")]),
     (&[(VERSION, "version = 1\nactuator = { dead_band = 0.5 }")], &[("unknown-key", 2, 14, "unknown key `dead_band` in `actuator`", "did you mean `deadband`?")]),
+    (&[(VERSION, "version = 1\nactuator = { stiction = {} }")], &[("missing-key", 2, 25, "`actuator.stiction.band` is missing", "band = 5.0")]),
+    (&[(VERSION, "version = 1\nactuator = { stiction = 5 }")], &[("wrong-type", 2, 25, "`actuator.stiction` is a number; a table is needed", "band = 5.0")]),
+    (&[(VERSION, "version = 1\nactuator = { stiction = { band = -1, jump = nan } }")], &[("out-of-range", 2, 34, "`actuator.stiction.band = -1` is out of range; allowed: 0 to 1e12", ""), ("out-of-range", 2, 45, "`actuator.stiction.jump = nan` is not a finite number", "")]),
+    (&[(VERSION, "version = 1\nactuator = { stiction = { band = 1, jump = 2 } }")], &[("conflict", 2, 44, "`actuator.stiction.jump = 2` must not be above `actuator.stiction.band = 1`", "")]),
+    (&[(VERSION, "version = 1\nactuator = { lo = 0, hi = 1, stiction = { band = 2 } }")], &[("conflict", 2, 50, "`actuator.stiction.band = 2` is wider than the range", "")]),
     (&[(VERSION, "version = 1\nactuator = { read_back = \"yes\" }")], &[("wrong-type", 2, 26, "`actuator.read_back` is a text; `true` or `false` is needed", "")]),
 ];

@@ -10,7 +10,7 @@ use super::page::{document, notes};
 use super::words;
 use crate::analysis::Analysis;
 use crate::output::Analysed;
-use crate::output::table::{format_number, rounded_numbers};
+use crate::output::table::{format_number, plant_text, rounded_numbers};
 use curves::{Curves, curves, lowest};
 use maud::{Markup, html};
 use picture::{complementary, figure, magnitude, noise, phase, sensitivity};
@@ -32,7 +32,7 @@ fn title(one: &Analysed<'_>) -> String {
     let title = match one.scenario.title.trim() {
         // Typed, or from the standard input.
         "" if one.name.starts_with('<') => {
-            format!("Loop of the plant {}", rounded_numbers(&one.scenario.plant.to_string()))
+            format!("Loop of the plant {}", rounded_numbers(&plant_text(one.scenario)))
         }
         "" => one.name.to_owned(),
         title => title.to_owned(),
@@ -73,7 +73,7 @@ pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool, with_numb
         section class="run" {
             @if several { h2 { (title(one)) } }
             dl class="loop" {
-                div { dt { "plant" } dd { (rounded_numbers(&one.scenario.plant.to_string())) } }
+                div { dt { "plant" } dd { (rounded_numbers(&plant_text(one.scenario))) } }
                 div { dt { "ts" } dd { (words::number(one.scenario.ts)) " s" } }
                 div { dt { "latency" } dd { (words::number(one.scenario.latency)) " s" } }
                 div { dt { "Nyquist frequency" } dd { (format_number(core::f64::consts::PI / one.scenario.ts)) " rad/s" } }
