@@ -5,13 +5,37 @@ use controller_sim_host::output::{Severity, Source, Trouble, error_json, render}
 use controller_sim_host::scenario::{Fault, Files, SourceText, override_key, read, read_with};
 use controller_sim_host::simulate::Precision;
 
-const TEXTS: [&str; 5] = [
+const TEXTS: [&str; 7] = [
     demo::SCENARIO,
     include_str!("../scenarios/windup.toml"),
     include_str!("../scenarios/sensor.toml"),
     include_str!("data/base.toml"),
+    include_str!("../scenarios/two-tank.toml"),
+    RIGS,
     SEVERAL,
 ];
+
+/// Plants that are not linear, and an actuator that sticks.
+const RIGS: &str = r#"version = 1
+ts = 0.5
+duration = 20.0
+[plant]
+heater = { gain = 0.8, gain_cool = 0.1, tau_heat = 60.0, tau_cool = 240.0, ambient = 20.0, sensor_lag = 10.0, dead_time = 6.0 }
+[initial]
+setpoint = 30.0
+[actuator]
+lo = 0.0
+hi = 100.0
+deadband = 0.1
+stiction = { band = 3.0, jump = 1.0 }
+[[event]]
+at = 1.0
+disturbance = { ramp = 1.0, duration = 5.0 }
+[[controller]]
+name = "PI"
+design = { method = "simc" }
+limits = { lo = 0.0, hi = 100.0 }
+"#;
 
 /// A scenario with a sweep, and the files that it names.
 const SEVERAL: &str = include_str!("data/several/scenario.toml");
@@ -175,8 +199,8 @@ fn no_text_makes_the_reader_panic() {
         let mut text = TEXTS[round % TEXTS.len()].to_owned();
         let mut files = Two { design: DESIGN.to_owned(), log: LOG.to_owned() };
         let changed = match round % (4 * TEXTS.len()) {
-            4 => &mut files.design,
-            9 => &mut files.log,
+            6 => &mut files.design,
+            13 => &mut files.log,
             _ => &mut text,
         };
         for _ in 0..=random.below(4) {

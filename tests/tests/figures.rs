@@ -12,5 +12,7 @@ mod observer;
 mod page;
 #[path = "figures/practice.rs"]
 mod practice;
+#[path = "figures/rig.rs"]
+mod rig;
 #[path = "figures/wandering.rs"]
 mod wandering;

@@ -31,6 +31,9 @@ pub(super) const ALL: &[(&str, &str)] = texts![
     "random-walk.toml",
     "recorded-load.toml",
     "recorded-load.csv",
+    "two-tank.toml",
+    "sticky-valve.toml",
+    "heater.toml",
     "figures/de-fig-06.toml",
     "figures/de-fig-07.toml",
     "figures/de-fig-11.toml",
@@ -42,4 +45,7 @@ pub(super) const ALL: &[(&str, &str)] = texts![
     "figures/dob-fig-04-05-plant-2-ms-2.0.toml",
     "figures/dob-fig-04-05-plant-3-ms-1.2.toml",
     "figures/dob-fig-04-05-plant-3-ms-2.0.toml",
+    "figures/dob-table-7.toml",
+    "figures/dob-fig-14-15-c1.toml",
+    "figures/dob-fig-14-15-c2.toml",
 ];

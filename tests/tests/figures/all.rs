@@ -5,7 +5,7 @@ use controller_sim_host::demo;
 use controller_sim_host::simulate::Precision;
 
 /// Runs whose remarks are what the page is about: scenario, controller.
-const INTENDED: [(&str, &str); 17] = [
+const INTENDED: [(&str, &str); 19] = [
     ("recorded-load", "PI"),
     ("sensor", "hold, go on"),
     ("sensor", "safe output, wait"),
@@ -15,6 +15,8 @@ const INTENDED: [(&str, &str); 17] = [
     ("level", "averaging"),
     ("actuator", "PI"),
     ("actuator", "PI, dead band"),
+    ("sticky-valve", "PI, slower"),
+    ("sticky-valve", "PI, dead band"),
     ("random-walk", "alpha = 10"),
     ("random-walk", "alpha = 1"),
     ("dob-fig-04-05-plant-1-ms-1.2", "PI"),
@@ -29,7 +31,11 @@ const INTENDED: [(&str, &str); 17] = [
 fn every_scenario_explains_itself_and_runs_in_both_precisions() {
     // At least eight teaching scenarios, and seven figures of the papers.
     let figures = demo::all().filter(|one| one.path.starts_with("figures/")).count();
-    assert_eq!(figures, 5 + 6, "five of the chapter; two of the paper in one for each of six loops");
+    assert_eq!(
+        figures,
+        5 + 6 + 3,
+        "five of the chapter; two of the paper in one for each of six loops; its rig"
+    );
     assert!(demo::all().count() >= figures + 8);
     for built_in in demo::all() {
         let name = built_in.name();
