@@ -11,6 +11,7 @@
 
 mod block;
 mod chain;
+mod horizon;
 mod map;
 mod march;
 mod measure;
@@ -27,6 +28,7 @@ use controller_core::PidConfig;
 
 use crate::Refusal;
 use crate::model::TransferFunction;
+use horizon::Horizon;
 use march::March;
 use measure::{Element, Sums};
 use realisation::Realisation;
@@ -329,6 +331,70 @@ impl ContinuousResponse {
             tv: (sums.tv + r.kick().abs()) / r.gain.abs(),
         };
         indices.finite()
+    }
+
+    /// The indices of the time from 0 to `horizon` \[s\] only: those of an experiment that ends there. Cost: at most that of
+    /// [`indices`](Self::indices), but for a horizon far beyond the end of the response.
+    ///
+    /// ```
+    /// use controller_core::PidConfig;
+    /// use controller_design::model::parse;
+    /// use controller_design::response::{ContinuousResponse, Load};
+    ///
+    /// let plant = parse("exp(-s)/(1+2*s)").expect("a plant");
+    /// let pid = PidConfig { kp: 0.5, ki: 0.2, ..PidConfig::default() };
+    /// let i = ContinuousResponse::new(&plant, &pid, None)?.indices_until(Load::Step, 1.5)?;
+    /// // Up to two dead times the controller has no effect on the output: e = -(1 - exp(-(t-1)/2)).
+    /// let exact = 0.5 - 2.0 * (1.0 - (-0.25_f64).exp());
+    /// assert!((i.iae - exact).abs() < 1e-6 && (i.ie + exact).abs() < 1e-6);
+    /// # Ok::<(), controller_design::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A horizon that is not positive and finite; a loop that is unstable so fast that its signals are beyond 1e12 times the
+    /// load before, or that moves too fast to be followed that long. A loop need not have settled, nor settle ever.
+    pub fn indices_until(&self, load: Load, horizon: f64) -> Result<Indices, Refusal> {
+        let found = self.cut(load.into(), horizon)?;
+        let r = &self.march.realisation;
+        let y = r.gain.abs() * if load == Load::Ramp { r.time } else { 1.0 };
+        let sums = found.sums;
+        let indices = Indices {
+            ie: -r.gain.signum() * y * r.time * found.area,
+            iae: sums.iae * y * r.time,
+            ise: sums.ise * y * y * r.time,
+            itae: sums.itae * y * r.time * r.time,
+            e_max: sums.y_max * y,
+            t_max: sums.t_max * r.time,
+            tv: if load == Load::Ramp { f64::INFINITY } else { sums.tv },
+        };
+        indices.finite()
+    }
+
+    /// [`setpoint_indices`](Self::setpoint_indices) of the time from 0 to `horizon` \[s\] only.
+    ///
+    /// # Errors
+    /// As for [`indices_until`](Self::indices_until).
+    pub fn setpoint_indices_until(&self, horizon: f64) -> Result<Indices, Refusal> {
+        let found = self.cut(Drive::Setpoint, horizon)?;
+        let r = &self.march.realisation;
+        let sums = found.sums;
+        let indices = Indices {
+            ie: -r.time * found.area,
+            iae: sums.iae * r.time,
+            ise: sums.ise * r.time,
+            itae: sums.itae * r.time * r.time,
+            e_max: sums.y_max,
+            t_max: sums.t_max * r.time,
+            tv: (sums.tv + r.kick().abs()) / r.gain.abs(),
+        };
+        indices.finite()
+    }
+
+    fn cut(&self, drive: Drive, horizon: f64) -> Result<Horizon, Refusal> {
+        within("horizon", horizon, f64::MIN_POSITIVE, f64::MAX)?;
+        let mut found = Horizon::new(horizon / self.march.realisation.time);
+        let (outcome, _) = self.march.run(drive, false, &mut |e| found.visit(e));
+        verdict(outcome).map(|()| found)
     }
 
     /// How much one response takes: for benchmarks.
