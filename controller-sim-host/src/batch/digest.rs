@@ -9,11 +9,7 @@ const FORMAT: &str = "controller-sim batch 1";
 /// threads, the shard, or where the rows go.
 pub(super) fn digest(study: &Study) -> String {
     let mut hash = Fnv::new();
-    let mut add = |text: &str| {
-        hash.add(text.as_bytes());
-        // No text contains it: two lists never run into one.
-        hash.add(&[0]);
-    };
+    let mut add = |text: &str| hash.add_text(text);
     add(FORMAT);
     add(env!("CARGO_PKG_VERSION"));
     for plant in &study.plants {
@@ -42,6 +38,13 @@ impl Fnv {
         for byte in bytes {
             self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
+    }
+
+    /// One text of several.
+    pub(super) fn add_text(&mut self, text: &str) {
+        self.add(text.as_bytes());
+        // No text contains it: two lists never run into one.
+        self.add(&[0]);
     }
 
     pub(super) fn text(&self) -> String {

@@ -1,7 +1,7 @@
 //! From a plant and a rule to a row.
 
 use super::list::NamedPlant;
-use super::responses::{Both, Continuous, extrapolated, is_exact, sampled};
+use super::responses::{Both, Continuous as Responses, extrapolated, is_exact, sampled};
 use super::row::{Row, Status};
 use super::study::{Point, Study};
 use controller_design::Refusal;
@@ -11,7 +11,7 @@ use controller_design::design::{
 use controller_design::margins::{ContinuousLoop, Margins};
 use controller_design::model::TransferFunction;
 
-/// Makes the rows of one process.
+/// Makes the rows of one plant.
 pub(super) struct Evaluator<'a> {
     study: &'a Study,
     name: &'a str,
@@ -20,33 +20,11 @@ pub(super) struct Evaluator<'a> {
     loops: Result<Loops<'a>, &'a str>,
 }
 
-/// The loops of one plant.
-struct Loops<'a> {
-    plant: &'a TransferFunction,
-    designer: Designer<'a>,
-    continuous: Continuous,
-}
-
-/// What is said of a design whichever loop was looked at.
-struct Judged {
-    law: Law,
-    /// Its period, or the one that the noise gains of a continuous loop are for \[s\].
-    ts: f64,
-    margins: Margins,
-    responses: Result<Both, String>,
-    how: &'static str,
-}
-
 impl<'a> Evaluator<'a> {
     /// `name` is that of the study.
     pub(super) fn new(study: &'a Study, name: &'a str, process: &'a NamedPlant) -> Self {
         let plant = process.plant.as_ref().map_err(String::as_str);
-        let loops = plant.map(|plant| Loops {
-            plant,
-            designer: Designer::new(plant),
-            continuous: Continuous::default(),
-        });
-        Self { study, name, process, loops }
+        Self { study, name, process, loops: plant.map(Loops::new) }
     }
 
     /// The row `number`, from 1.
@@ -59,61 +37,93 @@ impl<'a> Evaluator<'a> {
                 return row;
             }
         };
-        match loops.judged(point, self.study.ts) {
+        let ts = self.study.ts.unwrap_or_else(|| NamedPlant::period(loops.plant));
+        let request = Request {
+            ms: point.ms,
+            observer_filter: point.noise_ratio.map_or(ObserverFilter::Default, ObserverFilter::NoiseRatio),
+            ..Request::new(point.method, ts)
+        };
+        let view = if self.study.ts.is_some() { View::Sampled } else { View::Continuous };
+        loops.fill(&mut row, request, view);
+        row
+    }
+}
+
+/// Which loop is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum View {
+    /// The continuous one, its responses to their ends.
+    Continuous,
+    /// The continuous one, its responses up to this time \[s\].
+    Until(f64),
+    /// The sampled one, as it runs.
+    Sampled,
+}
+
+/// What is said of a design whichever loop was looked at.
+struct Judged {
+    law: Law,
+    margins: Margins,
+    responses: Result<Both, String>,
+    how: &'static str,
+}
+
+/// The loops of one plant.
+pub(super) struct Loops<'a> {
+    plant: &'a TransferFunction,
+    designer: Designer<'a>,
+    continuous: Responses,
+}
+
+impl<'a> Loops<'a> {
+    pub(super) fn new(plant: &'a TransferFunction) -> Self {
+        Self { plant, designer: Designer::new(plant), continuous: Responses::default() }
+    }
+
+    /// Designs and judges what is asked for, and puts it into a row. An ADRC whose gain is not given has it searched for, as in
+    /// any comparison of rules: that of the model compares badly on plants with dead time.
+    pub(super) fn fill(&mut self, row: &mut Row, request: Request, view: View) {
+        let b0 = if request.b0 == AdrcGain::Model { AdrcGain::Search } else { request.b0 };
+        match self.judged(&Request { b0, ..request }, view) {
             Err(refusal) => row.end(Status::Refused, &refusal.to_string()),
-            Ok(Judged { law, ts, margins, responses, how }) => {
-                row.put_loop(how, ts);
+            Ok(Judged { law, margins, responses, how }) => {
+                row.put_loop(how, request.ts);
                 row.put_law(&law);
-                row.put_margins(&margins, loops.noise_gain(&law));
+                row.put_margins(&margins, self.noise_gain(&law));
                 match responses {
                     Ok([setpoint, load]) => row.put_responses(setpoint, load),
                     Err(why) => row.end(Status::Failed, &why),
                 }
             }
         }
-        row
     }
-}
 
-impl Loops<'_> {
-    /// The loop of `point`, sampled with the period that is given or as the continuous one.
-    fn judged(&mut self, point: Point, given: Option<f64>) -> Result<Judged, Refusal> {
-        let ts = given.unwrap_or_else(|| NamedPlant::period(self.plant));
-        let request = Request {
-            ms: point.ms,
-            observer_filter: point.noise_ratio.map_or(ObserverFilter::Default, ObserverFilter::NoiseRatio),
-            // As in a comparison of all rules: that of the model compares badly on plants with dead time.
-            b0: AdrcGain::Search,
-            ..Request::new(point.method, ts)
-        };
-        if given.is_some() {
-            let made = self.designer.design(&request)?;
+    fn judged(&mut self, request: &Request, view: View) -> Result<Judged, Refusal> {
+        if view == View::Sampled {
+            let made = self.designer.design(request)?;
             let responses = sampled(&made);
-            return Ok(Judged {
-                margins: made.sampled.margins,
-                law: made.law,
-                ts,
-                responses,
-                how: "sampled",
-            });
+            return Ok(Judged { margins: made.sampled.margins, law: made.law, responses, how: "sampled" });
         }
-        if !matches!(point.method, Method::DeMomi | Method::Adrc) {
-            let ContinuousDesign { law, robustness, .. } = self.designer.continuous(&request)?;
-            return Ok(self.exact(law, ts, robustness));
+        if !matches!(request.method, Method::DeMomi | Method::Adrc) {
+            let ContinuousDesign { law, robustness, .. } = self.designer.continuous(request)?;
+            return Ok(self.exact(law, robustness, view));
         }
-        let made: Design = self.designer.design(&request)?;
+        let made: Design = self.designer.design(request)?;
         if is_exact(self.plant, &made.law) {
-            return Ok(self.exact(made.law, ts, made.robustness));
+            return Ok(self.exact(made.law, made.robustness, view));
         }
-        let responses = extrapolated(&made);
-        Ok(Judged { margins: made.robustness, law: made.law, ts, responses, how: "extrapolated" })
+        let responses = match view {
+            View::Until(_) => Err("only a law with exact responses has indices up to a horizon".to_owned()),
+            _ => extrapolated(&made),
+        };
+        Ok(Judged { margins: made.robustness, law: made.law, responses, how: "extrapolated" })
     }
 
-    fn exact(&mut self, law: Law, ts: f64, margins: Margins) -> Judged {
-        let responses = self.continuous.responses(self.plant, &law);
+    fn exact(&mut self, law: Law, margins: Margins, view: View) -> Judged {
+        let horizon = if let View::Until(horizon) = view { Some(horizon) } else { None };
+        let responses = self.continuous.responses(self.plant, &law, horizon);
         Judged {
             law,
-            ts,
             margins,
             responses: responses.map_err(|refusal| refusal.to_string()),
             how: "continuous",

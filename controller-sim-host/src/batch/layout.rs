@@ -36,6 +36,8 @@ pub enum About {
     Rules,
     /// One controller on one plant that was drawn.
     Samples,
+    /// One rule at one point of a map.
+    Points,
 }
 
 /// The columns of a file. The first one names the study, the second one numbers the row.
@@ -52,15 +54,23 @@ impl Layout {
         Self { about: About::Rules, columns: row::COLUMNS.to_vec() }
     }
 
+    /// That of the rows of a map: those of [`rules`](Self::rules), then names and values of its parameters, and the horizon.
+    #[must_use]
+    pub fn points() -> Self {
+        Self { about: About::Points, columns: [&row::COLUMNS[..], &row::POINT].concat() }
+    }
+
     pub(super) const fn samples(columns: Vec<Column>) -> Self {
         Self { about: About::Samples, columns }
     }
 
     /// The layout with these names; `None`: no study writes them.
     pub(super) fn named(names: &[String]) -> Option<Self> {
-        let rules = Self::rules();
-        if rules.columns.iter().map(|column| &*column.name).eq(names.iter().map(String::as_str)) {
-            return Some(rules);
+        let has_them = |layout: &Self| {
+            layout.columns.iter().map(|column| &*column.name).eq(names.iter().map(String::as_str))
+        };
+        if let Some(layout) = [Self::rules(), Self::points()].into_iter().find(has_them) {
+            return Some(layout);
         }
         sample::columns_named(names).map(Self::samples)
     }
@@ -97,7 +107,7 @@ impl Layout {
             Kind::Count => cell.parse::<u64>().is_ok(),
         };
         let statuses: &[&str] = match self.about {
-            About::Rules => &row::STATUSES,
+            About::Rules | About::Points => &row::STATUSES,
             About::Samples => &sample::STATUSES,
         };
         let status = self.place("status").and_then(|at| cells.get(at));
@@ -163,7 +173,7 @@ impl AsRef<Cells> for Cells {
 }
 
 /// A number with all its digits, such that reading and writing it again changes nothing.
-pub(super) fn show(x: f64) -> String {
+pub(crate) fn show(x: f64) -> String {
     // With an exponent where that is shorter: 0.01, 1.5, 1e-7, 1e300; whole numbers without `.0`.
     let text = format!("{x:?}");
     match text.strip_suffix(".0") {

@@ -44,7 +44,13 @@ pub(super) struct Continuous {
 }
 
 impl Continuous {
-    pub(super) fn responses(&mut self, plant: &TransferFunction, law: &Law) -> Result<Both, Refusal> {
+    /// Up to `horizon` \[s\], the same in every call, or to the end.
+    pub(super) fn responses(
+        &mut self,
+        plant: &TransferFunction,
+        law: &Law,
+        horizon: Option<f64>,
+    ) -> Result<Both, Refusal> {
         let Law::Pid { pid, estimator, observer } = law else {
             return Err(Refusal::NoSolution {
                 why: "this law has no exact responses",
@@ -56,11 +62,19 @@ impl Continuous {
             (None, Some(observer)) => ContinuousResponse::with_alpha(plant, pid, observer.alpha)?,
             (None, None) => ContinuousResponse::new(plant, pid, None)?,
         };
-        let load = numbers(response.indices(Load::Step)?);
+        let load = match horizon {
+            None => response.indices(Load::Step),
+            Some(end) => response.indices_until(Load::Step, end),
+        };
+        let load = numbers(load?);
         let known = self.setpoints.iter().find(|(other, _)| other == pid).map(|(_, known)| *known);
         let setpoint = known.unwrap_or_else(|| {
             let alone = ContinuousResponse::new(plant, pid, None);
-            let found = alone.and_then(|alone| alone.setpoint_indices()).map(numbers);
+            let found = alone.and_then(|alone| match horizon {
+                None => alone.setpoint_indices(),
+                Some(end) => alone.setpoint_indices_until(end),
+            });
+            let found = found.map(numbers);
             self.setpoints.push((*pid, found));
             found
         })?;
@@ -106,7 +120,7 @@ mod tests {
                 let request = Request { observer_filter: filter, ..Request::new(method, ts) };
                 let made = design(&plant, &request).expect("a design");
                 assert!(is_exact(&plant, &made.law), "{text} {method:?}");
-                let exact = Continuous::default().responses(&plant, &made.law).expect("a stable loop");
+                let exact = Continuous::default().responses(&plant, &made.law, None).expect("a stable loop");
                 let near = extrapolated(&made).expect("a stable loop");
                 for (i, (exact, near)) in exact.iter().zip(&near).enumerate() {
                     for (j, (x, y)) in exact.iter().zip(near).enumerate() {

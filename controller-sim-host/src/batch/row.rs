@@ -56,6 +56,17 @@ pub static COLUMNS: [Column; 39] = [
     number("load_tv"),
 ];
 
+/// What the rows of a map have besides.
+pub(super) static POINT: [Column; 7] = [
+    text("x_name"),
+    number("x"),
+    text("y_name"),
+    number("y"),
+    text("each_name"),
+    number("each"),
+    number("horizon"),
+];
+
 const PROCESS: usize = 2;
 const METHOD: usize = 4;
 const MS0: usize = 5;
@@ -130,7 +141,7 @@ impl Row {
         Self { cells }
     }
 
-    /// All cells, in the order of [`COLUMNS`].
+    /// All cells, in the order of the columns.
     #[must_use]
     pub fn cells(&self) -> &[String] {
         self.cells.all()
@@ -177,6 +188,17 @@ impl Row {
     #[must_use]
     pub fn ms(&self) -> Option<f64> {
         self.cells.0[MARGINS].parse().ok()
+    }
+
+    /// Makes it a row of a map: names and values of its parameters, and the horizon.
+    pub(super) fn put_point(&mut self, parameters: [(&str, Option<f64>); 3], horizon: Option<f64>) {
+        let from = COLUMNS.len();
+        self.cells.0.resize(from + POINT.len(), String::new());
+        for (i, (name, value)) in parameters.into_iter().enumerate() {
+            name.clone_into(&mut self.cells.0[from + 2 * i]);
+            self.cells.put(from + 2 * i + 1, [value]);
+        }
+        self.cells.put(from + POINT.len() - 1, [horizon]);
     }
 
     pub(super) fn end(&mut self, status: Status, reason: &str) {

@@ -49,6 +49,32 @@ pub struct Cause {
 /// Causes that are kept apart; what else there is counts as rows only.
 const CAUSES: usize = 20;
 
+/// Gathers why rows have no result.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Causes(Vec<Cause>);
+
+impl Causes {
+    /// Adds the next row; nothing of one that is ok.
+    pub(super) fn add(&mut self, row: &Row) {
+        let ([method, ..], status, reason) = (row.point(), row.status(), row.reason());
+        if status == Status::Ok {
+            return;
+        }
+        let same =
+            |cause: &&mut Cause| cause.method == method && cause.status == status && cause.reason == reason;
+        if let Some(cause) = self.0.iter_mut().find(same) {
+            cause.rows += 1;
+        } else if self.0.len() < CAUSES {
+            let [method, reason, process] = [method, reason, row.process()].map(str::to_owned);
+            self.0.push(Cause { method, status, reason, process, rows: 1 });
+        }
+    }
+
+    pub(super) fn list(&self) -> &[Cause] {
+        &self.0
+    }
+}
+
 /// Gathers rows in their order.
 #[derive(Debug, Clone, Default)]
 pub struct Summary {
@@ -59,7 +85,7 @@ pub struct Summary {
     first_method: String,
     /// IAE, ISE, ITAE of the first method on this process, by `Ms`.
     base: BTreeMap<String, [f64; 3]>,
-    causes: Vec<Cause>,
+    causes: Causes,
 }
 
 impl Summary {
@@ -90,18 +116,7 @@ impl Summary {
             self.groups.push((group, [const { Vec::new() }; 3]));
             self.groups.len() - 1
         });
-        if row.status() != Status::Ok {
-            let (status, reason) = (row.status(), row.reason());
-            let same = |cause: &&mut Cause| {
-                cause.method == method && cause.status == status && cause.reason == reason
-            };
-            if let Some(cause) = self.causes.iter_mut().find(same) {
-                cause.rows += 1;
-            } else if self.causes.len() < CAUSES {
-                let [method, reason, process] = [method, reason, row.process()].map(str::to_owned);
-                self.causes.push(Cause { method, status, reason, process, rows: 1 });
-            }
-        }
+        self.causes.add(row);
         let (group, ratios) = &mut self.groups[at];
         group.counts[row.status() as usize] += 1;
         if let Some(ms) = row.ms() {
@@ -129,7 +144,7 @@ impl Summary {
     /// Why rows have no result, at most 20 causes.
     #[must_use]
     pub fn causes(&self) -> &[Cause] {
-        &self.causes
+        self.causes.list()
     }
 
     /// The groups, in the order of their first rows.

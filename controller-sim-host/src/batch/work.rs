@@ -5,7 +5,7 @@ use super::row::Row;
 use super::study::Study;
 use crate::simulate::Control;
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::thread;
@@ -72,16 +72,12 @@ pub(super) fn in_order<R: Send, E: From<Stopped>, F: FnMut(usize) -> Option<R>>(
     jobs: usize,
     control: &Control,
     done: &AtomicU64,
-    mut take: impl FnMut(Vec<R>) -> Result<(), E>,
+    take: impl FnMut(Vec<R>) -> Result<(), E>,
     begin: impl Fn(usize) -> F + Sync,
 ) -> Result<(), E> {
     if range.is_empty() || each == 0 {
         return Ok(());
     }
-    let (first, last) = (range.start / each, (range.end - 1) / each);
-    let queue = Mutex::new(Queue { next: first, due: first, done: BTreeMap::new(), ended: false });
-    let changed = Condvar::new();
-    let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let rows_of = |index: usize| {
         let mut row = begin(index);
         let mut rows = Vec::new();
@@ -98,6 +94,24 @@ pub(super) fn in_order<R: Send, E: From<Stopped>, F: FnMut(usize) -> Option<R>>(
         }
         rows
     };
+    items_in_order(range.start / each..=(range.end - 1) / each, jobs, control, take, rows_of)
+}
+
+/// Makes the rows of every item on `jobs` threads and gives them to `take` in the order of the items.
+///
+/// # Errors
+/// As those of [`work`].
+pub(super) fn items_in_order<R: Send, E: From<Stopped>>(
+    items: RangeInclusive<usize>,
+    jobs: usize,
+    control: &Control,
+    mut take: impl FnMut(Vec<R>) -> Result<(), E>,
+    rows_of: impl Fn(usize) -> Vec<R> + Sync,
+) -> Result<(), E> {
+    let (first, last) = (*items.start(), *items.end());
+    let queue = Mutex::new(Queue { next: first, due: first, done: BTreeMap::new(), ended: false });
+    let changed = Condvar::new();
+    let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
     let worker = || {
         let _guard = Guard { queue: &queue, changed: &changed };
         loop {

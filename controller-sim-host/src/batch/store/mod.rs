@@ -46,6 +46,12 @@ impl Format {
     }
 }
 
+/// `csv` or `parquet`, by the ending of a name that was accepted.
+#[must_use]
+pub fn kind(path: &Path) -> &'static str {
+    if Format::of(path) == Ok(Format::Parquet) { "parquet" } else { "csv" }
+}
+
 /// A file that takes rows.
 #[derive(Debug)]
 pub struct RowFile {
