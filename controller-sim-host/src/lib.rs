@@ -10,8 +10,9 @@
 //! * [`report`]: pages and pictures.
 //! * [`advise`], [`design_file`], [`tuning`]: what the tuning rules make of a plant or a record.
 //! * [`advise`], [`design_file`]: what the tuning rules make of a plant.
-//! * [`batch`]: many plants by many rules.
-//! * [`reproduce`]: every table of the papers, computed again.
+//! * [`batch`]: many plants by many rules, and maps over two parameters.
+//! * [`contour`]: lines of equal values.
+//! * [`reproduce`]: every table and figure of the papers, computed again.
 //! * [`pil`]: the controllers in an image on an emulated board, compared bit by bit.
 //! * [`cli`]: the program `controller-sim`.
 //!
@@ -33,6 +34,7 @@ pub mod analysis;
 pub mod batch;
 pub mod card;
 pub mod cli;
+pub mod contour;
 pub mod demo;
 pub mod design_file;
 pub mod design_run;
