@@ -39,6 +39,7 @@ pub(super) const ALL: &[(&str, &str)] = texts![
     "figures/de-fig-11.toml",
     "figures/de-fig-12.toml",
     "figures/de-fig-14.toml",
+    "figures/de-fig-15.toml",
     "figures/dob-fig-04-05-plant-1-ms-1.2.toml",
     "figures/dob-fig-04-05-plant-1-ms-2.0.toml",
     "figures/dob-fig-04-05-plant-2-ms-1.2.toml",

@@ -29,12 +29,12 @@ const INTENDED: [(&str, &str); 19] = [
 
 #[test]
 fn every_scenario_explains_itself_and_runs_in_both_precisions() {
-    // At least eight teaching scenarios, and seven figures of the papers.
+    // At least eight teaching scenarios, and the figures of the papers.
     let figures = demo::all().filter(|one| one.path.starts_with("figures/")).count();
     assert_eq!(
         figures,
-        5 + 6 + 3,
-        "five of the chapter; two of the paper in one for each of six loops; its rig"
+        6 + 6 + 3,
+        "six of the chapter; two of the paper in one for each of six loops; its rig"
     );
     assert!(demo::all().count() >= figures + 8);
     for built_in in demo::all() {

@@ -1,12 +1,18 @@
-//! Figures 6, 7, 11, 12, 14 and the six processes of Vrancic and Huba (2021).
+//! Figures 6, 7, 11, 12, 14, 15 and the six processes of Vrancic and Huba (2021).
 
 use super::page::{Page, mentions, near, quiet};
 use controller_sim_host::simulate::Metrics;
 use controller_tests::oracle::de_cases::{CASES, DeCase, IaePair};
 
 /// A scenario and its process; the disturbance comes at the second event.
-const FIGURES: [(&str, usize); 5] =
-    [("de-fig-06", 0), ("de-fig-07", 1), ("de-fig-11", 2), ("de-fig-12", 3), ("de-fig-14", 4)];
+const FIGURES: [(&str, usize); 6] = [
+    ("de-fig-06", 0),
+    ("de-fig-07", 1),
+    ("de-fig-11", 2),
+    ("de-fig-12", 3),
+    ("de-fig-14", 4),
+    ("de-fig-15", 5),
+];
 
 const PROCESSES: [(&str, usize); 6] = [
     ("chapter-gp1", 0),
@@ -123,6 +129,28 @@ fn the_fourth_method_of_figure_14() {
         ("1.8", page.after(REJECTION, "DE-MOMI").tv),
     ]);
     assert!(d.tv > 2.0 * page.after(REJECTION, "DRMO").tv);
+}
+
+/// Figure 15: the law (4) for AH and the printed gains for ADRC, as the reference has both.
+#[test]
+fn the_fourth_and_fifth_method_of_figure_15() {
+    let page = Page::new("de-fig-15");
+    let (t, d) = both(&page, "AH");
+    near("tracking", t.iae, 11.458_911_79, IAE_TOLERANCE);
+    near("rejection", d.iae, 9.300_513_93, IAE_TOLERANCE);
+    page.says(&[("11.5", t.iae), ("9.30", d.iae)]);
+    let (t, d) = both(&page, "ADRC");
+    near("ADRC tracking", t.iae, 12.407_55, 0.015);
+    near("ADRC rejection", d.iae, 8.782_60, 0.03);
+    page.says(&[("12.4", t.iae), ("8.9", d.iae)]);
+    let iae = |who: &str| page.after(REJECTION, who).iae;
+    page.says(&[("7.80", iae("DE-MOMI")), ("8.42", iae("MOMI")), ("8.80", iae("DRMO"))]);
+    let iae = |who: &str| page.after(TRACKING, who).iae;
+    page.says(&[("8.65", iae("DE-MOMI")), ("8.65", iae("MOMI")), ("12.3", iae("DRMO"))]);
+    // MOMI and DE-MOMI track clearly best; all reject alike.
+    assert!(["DRMO", "AH", "ADRC"].iter().all(|who| iae(who) > 1.3 * iae("MOMI")));
+    let all = ["MOMI", "DRMO", "DE-MOMI", "AH", "ADRC"].map(|who| page.after(REJECTION, who).iae);
+    assert!(all.iter().all(|x| (x / 8.5 - 1.0).abs() < 0.1), "{all:?}");
 }
 
 /// Table 8, ADRC with the printed gains: the reference's values sampled, printed, and for an infinitely short period. It
