@@ -13,6 +13,7 @@ mod gallery;
 mod identify;
 mod input;
 mod interrupt;
+mod map;
 mod outputs;
 mod pages;
 mod progress;
@@ -119,7 +120,7 @@ pub fn main() -> ExitCode {
         Some(Command::Identify(arguments)) => identify::run(&arguments, json, &command),
         Some(Command::Export(arguments)) => export::run(&arguments, json),
         Some(Command::Batch(arguments)) => batch::run(&arguments, json, &command),
-        Some(Command::Reproduce(arguments)) => reproduce::run(&arguments, json),
+        Some(Command::Reproduce(arguments)) => reproduce::run(&arguments, json, &command),
         Some(Command::Completions(arguments)) => pages::completions(&arguments, json),
         Some(Command::Man(arguments)) => pages::man(&arguments, json),
         Some(Command::Schema) => pages::schema(),

@@ -4,6 +4,7 @@
 //! * [`list`]: the plants, built in or from a file.
 //! * [`Study`]: what is asked for; its rows stand in one order, whoever computes them.
 //! * [`Row`]: what comes of one rule on one plant.
+//! * [`map`]: a rule on a grid of two parameters.
 //! * [`sample`]: the plants around that of a scenario, drawn by chance.
 //! * [`store`]: rows in files: streamed, resumed, merged.
 //! * [`Summary`]: what the rows come to.
@@ -12,6 +13,7 @@ mod digest;
 mod evaluate;
 mod layout;
 pub mod list;
+pub mod map;
 mod reader;
 mod responses;
 mod row;
@@ -21,6 +23,7 @@ mod study;
 mod summary;
 mod work;
 
+pub(crate) use layout::show;
 pub use layout::{About, Cells, Column, Kind, Layout};
 pub use reader::RowReader;
 pub use row::{COLUMNS, Row, Status};

@@ -42,7 +42,7 @@ pub(super) enum Command {
     Export(super::export::ExportArguments),
     /// Designs loops for many plants by many rules and compares them
     Batch(super::batch::BatchArguments),
-    /// Computes the tables of the papers again: printed, true, ours, verdict
+    /// Computes the tables of the papers again: printed, true, ours, verdict; and draws their figures
     Reproduce(ReproduceArguments),
     /// Prints the completions for a shell
     Completions(CompletionsArguments),

@@ -1,5 +1,6 @@
 //! `batch`: many plants by many rules.
 
+use super::map::MapArguments;
 use super::sample::SampleArguments;
 use super::{
     EXIT_REFUSED, EXIT_STOPPED, Failure, colours, examples, input, interrupt, print, progress, wish,
@@ -84,6 +85,8 @@ enum BatchCommand {
     /// Joins the shards of a study, in any order, to the file that the whole study gives
     #[command(after_help = examples::BATCH_MERGE)]
     Merge(MergeArguments),
+    /// Draws what a rule gives on a grid of two parameters, of the plant or of the rule, as contour lines
+    Map(Box<MapArguments>),
 }
 
 #[derive(Debug, Args)]
@@ -106,7 +109,7 @@ enum Set {
     Ah134,
 }
 
-fn method() -> impl TypedValueParser<Value = Method> {
+pub(super) fn method() -> impl TypedValueParser<Value = Method> {
     let words = Method::ALL.map(|method| PossibleValue::new(method.name()).help(method.about()));
     PossibleValuesParser::new(words).try_map(|name| Method::named(&name).ok_or("no such method"))
 }
@@ -131,6 +134,7 @@ pub(super) fn run(arguments: &BatchArguments, json: bool, command: &str) -> Resu
     match &arguments.command {
         Some(BatchCommand::Sample(sample)) => return super::sample::run(sample, json, command),
         Some(BatchCommand::Merge(merge)) => return join(merge, json),
+        Some(BatchCommand::Map(map)) => return super::map::run(map, json, command),
         None => {}
     }
     if arguments.list {
@@ -300,7 +304,7 @@ fn join(arguments: &MergeArguments, json: bool) -> Result<(), Failure> {
     let merged =
         store::merge(&arguments.files, &arguments.out, arguments.force, |layout, cells| {
             match layout.about() {
-                About::Rules => {
+                About::Rules | About::Points => {
                     let row = Row::from(cells.clone());
                     rules.get_or_insert_with(|| Summary::new(row.point()[0])).add(&row);
                 }

@@ -120,6 +120,9 @@ Examples:
   controller-sim reproduce --paper de --table 5   one of them
   controller-sim reproduce --paper pi             those of one paper
   controller-sim reproduce --json > tables.json
+  controller-sim reproduce --figures              every figure: what draws it, or why nothing can
+  controller-sim reproduce --figure dob-10 --report fig10.html
+  controller-sim reproduce --figure pi-7 --svg fig7.svg --csv fig7.csv
 
 Printed is what the paper says, true what an independent computation gives, ours what this program gives; the verdict
 is about the paper. Exit code 1: ours differs from true by more than the tolerance of a cell.";
@@ -134,6 +137,7 @@ Examples:
   controller-sim batch --processes my.csv --shard 2/4 --out part2.csv
   controller-sim batch merge part*.csv --out rows.csv
   controller-sim batch sample loop.toml --vary gain=+-20% --vary lag=+-20%    how robust is a loop
+  controller-sim batch map --help                                     contour lines over two parameters
 
 Margins and indices are those of the continuous loop, exact but for de-momi with a reduced model
 and adrc: these are simulated sampled with two periods and extrapolated. With `--ts` all are those
@@ -165,6 +169,22 @@ where the values span no more than a factor of four. A sample depends on the see
 interruptions and shards change no byte of the rows.
 
 Exit codes: 0 done, also when samples are refused (each row says why); 3 when no row has a result; 2 bad input.";
+pub(super) const BATCH_MAP: &str = "\
+Examples:
+  controller-sim batch map --x L=0.05:0.95:19 --y alpha_ratio=0.01:100:17:log --at ms=1.4 --over pi-ms --report map.html
+  controller-sim batch map --x L=0.02:0.98:25 --y alpha_ratio=0.01:100:25:log --each ms=1.2,1.6,2 --over pi-ms \\
+      --metric load_iae,load_ise,ms,a_n --svg fig10.svg --out fig10.csv
+  controller-sim batch map --plant 'exp(-T*s)/((1+s)*(1+r*s))' --method simc --metric ms --x T=0.05:2:20:log --y r=0:1:11 \\
+      --x-label 'dead time [s]' --y-label 'ratio of the lags' --svg ms.svg
+  controller-sim batch map --plant '1/(1+s)^n' --method pi-ms --x n=3:8:6 --y ms=1.2:2:9 --metric load_itae --report order.html
+  controller-sim batch map --method de-momi --x L=0.05:0.6:12 --y kpidn=2:20:10:log --metric setpoint_iae,ms --out rows.parquet
+
+Letters of the plant other than s are parameters, and so are ms, ms_max, alpha, alpha_ratio (alpha over dead time plus lags),
+noise_ratio, tf, kpidn, tfd, kden, tau_c, b0 where the rule looks at them. A point that the rule refuses is a hole, grey in
+the picture, with its reason in the rows. Rows, --resume, --shard and `batch merge` are as those of `batch`; a complete file is
+drawn again by the same command with --resume.
+
+Exit codes: 0 done, 3 when no point has a result, 2 bad input.";
 
 pub(super) const BATCH_MERGE: &str = "\
 Examples:

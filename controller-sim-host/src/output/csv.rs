@@ -106,7 +106,7 @@ fn push_number(text: &mut String, x: f64) {
 }
 
 /// A text as a CSV field: in quotes when it has a comma, a quote, a line break or a space at an end.
-fn field(text: &str) -> String {
+pub(super) fn field(text: &str) -> String {
     if text.contains([',', '"', ';', '\n', '\r']) || text.trim() != text {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

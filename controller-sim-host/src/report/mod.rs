@@ -17,6 +17,7 @@ mod frame;
 mod glossary;
 mod identification;
 mod legend;
+mod mapped;
 mod marks;
 mod overview;
 mod page;
@@ -25,6 +26,7 @@ mod parameters;
 mod path;
 mod samples;
 mod scale;
+pub mod sheet;
 mod standalone;
 mod tables;
 mod tuning;
@@ -32,6 +34,7 @@ mod words;
 
 pub use assessment::{Experiment, Line, advice, assessment_page, lines, verdict_line};
 pub use experiment::Signals;
+pub use mapped::{MapLook, map_page, map_sheet, sheet_page, sheet_svg};
 
 use crate::output::Identification;
 use crate::scenario::{Fault, Scenario};

@@ -10,6 +10,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const PAGE_STYLE: &str = include_str!("style/page.css");
 /// Of what is marked in the pictures of records and of responses over frequency.
 const DIAGRAM_STYLE: &str = include_str!("style/diagram.css");
+/// Of curves and maps that are no runs.
+const SHEET_STYLE: &str = include_str!("style/sheet.css");
 
 /// The page as text.
 pub(super) fn page(chapters: &[Chapter<'_>], command: &str) -> String {
@@ -45,7 +47,7 @@ pub(super) fn document(kind: &str, heading: &str, content: &Markup, command: &st
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (heading) }
-                style { (PreEscaped(STYLE)) (PreEscaped(PAGE_STYLE)) (PreEscaped(DIAGRAM_STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(PAGE_STYLE)) (PreEscaped(DIAGRAM_STYLE)) (PreEscaped(SHEET_STYLE)) }
             }
             body {
                 header {

@@ -62,6 +62,11 @@ impl<'a> Bench<'a> {
         Self { control }
     }
 
+    /// What stops it.
+    pub(super) const fn control(&self) -> &'a Control {
+        self.control
+    }
+
     /// Ends a long computation when somebody wants it.
     pub(super) fn check(&self) -> Result<(), Stop> {
         if self.control.is_stopped() { Err(Stop::Stopped) } else { Ok(()) }

@@ -20,10 +20,12 @@ mod cell;
 mod data;
 mod de;
 mod dob;
+mod figures;
 mod pi;
 mod values;
 
 pub use cell::{Cell, Tolerance, Verdict};
+pub use figures::{DrawError, Figure, Way, draw, figure_named, figures};
 
 use crate::simulate::Control;
 use bench::{Bench, Stop};

@@ -3,7 +3,7 @@
 mod batch;
 mod designs;
 mod equations;
-mod loops;
+pub(super) mod loops;
 mod ratios;
 mod tank;
 mod trade_off;

@@ -1,7 +1,7 @@
 //! The paper of Airikka 2021. It has no numbered tables; these gather its rules and figures.
 
 mod optimum;
-mod process;
+pub(super) mod process;
 mod ratios;
 mod robustness;
 mod rules;

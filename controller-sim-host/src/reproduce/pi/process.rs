@@ -16,16 +16,16 @@ pub(super) const RANGE: [f64; 16] =
 
 /// A process with its optimal PI.
 #[derive(Debug, Clone)]
-pub(super) struct Optimum {
+pub(in super::super) struct Optimum {
     /// `theta/tau`; `None`: the integrator.
-    pub(super) r: Option<f64>,
-    pub(super) plant: TransferFunction,
-    pub(super) pid: PidConfig,
-    pub(super) iae: f64,
+    pub(in super::super) r: Option<f64>,
+    pub(in super::super) plant: TransferFunction,
+    pub(in super::super) pid: PidConfig,
+    pub(in super::super) iae: f64,
 }
 
 impl Optimum {
-    pub(super) fn new(r: Option<f64>) -> Result<Self, Stop> {
+    pub(in super::super) fn new(r: Option<f64>) -> Result<Self, Stop> {
         let plant = match r {
             Some(r) => TransferFunction::first_order(1.0, 1.0 / r, 1.0)?,
             None => TransferFunction::integrating(1.0, 1.0)?,
@@ -35,7 +35,7 @@ impl Optimum {
     }
 
     /// Several, side by side.
-    pub(super) fn of(bench: &Bench<'_>, list: &[Option<f64>]) -> Result<Vec<Self>, Stop> {
+    pub(in super::super) fn of(bench: &Bench<'_>, list: &[Option<f64>]) -> Result<Vec<Self>, Stop> {
         let one = |r: &Option<f64>| {
             bench.check()?;
             Self::new(*r)
