@@ -8,12 +8,14 @@ mod design;
 mod export;
 mod faults;
 mod features;
+mod figures;
 mod files;
 mod folder;
 mod gallery;
 mod identify;
 #[cfg(unix)]
 mod interrupt;
+mod map;
 mod page_words;
 mod pages;
 mod parquet;
