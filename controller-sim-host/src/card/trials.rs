@@ -4,7 +4,7 @@ use super::Trial;
 use super::deployed::{Deployed, Point};
 use crate::output::table::format_number;
 use crate::scenario::{Actuator, Change, Event, Initial, Noise, Scenario, Sensor, Signal};
-use crate::simulate::{COLUMNS, ControllerResult, Precision, RunOptions, RunResult, View, run};
+use crate::simulate::{ControllerResult, Precision, RunOptions, RunResult, View, run};
 use controller_core::Real;
 use controller_design::margins::Margins;
 
@@ -12,8 +12,10 @@ use controller_design::margins::Margins;
 pub(super) const OVER: f64 = 0.02;
 /// Most samples of a run: their memory stays below 100 MB.
 const MOST: f64 = 3e5;
+/// Bands of a picture: a page may have several cards.
+const COLUMNS: usize = 280;
 /// Samples of noise in the picture.
-const NOISY: f64 = 400.0;
+const NOISY: f64 = 280.0;
 /// Standard deviation of that noise as a share of the step of the set-point, where the file says none.
 const SHARE: f64 = 0.01;
 

@@ -9,9 +9,7 @@ use crate::batch::list::{self, Format, List, NamedPlant};
 use crate::batch::sample::SampleSummary;
 use crate::batch::store::{self, Begun, RowFile};
 use crate::batch::{About, Layout, Row, Shard, Stopped, Study, Summary, work};
-use crate::output::{
-    Batched, Problem, Sampled, Trouble, batch_json, batch_table, is_same_file, render_all,
-};
+use crate::output::{Batched, Problem, Sampled, Trouble, batch_json, batch_table, is_same_file, render_all};
 use crate::scenario::SourceText;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Subcommand, ValueEnum, ValueHint};

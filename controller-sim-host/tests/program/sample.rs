@@ -409,7 +409,8 @@ fn the_page_shows_the_distributions() {
     let shown = folder.done(&["batch", "sample", "de.toml", "-n", "50", "--report", "page.html"]);
     assert!(shown.ends_with("wrote page.html\n"), "{shown}");
     let page = folder.read("page.html");
-    assert_eq!(page.matches("id=\"cdf-").count(), 5 + 12);
+    // The figure and its title.
+    assert_eq!(page.matches("id=\"cdf-").count(), 2 * (5 + 12));
     assert_eq!(page.matches("class=\"l c0 k0\"").count(), 1 + 17, "a legend and a line in each");
     assert!(
         page.contains("Clopper-Pearson") && page.contains("batch sample de.toml -n 50 --report page.html")

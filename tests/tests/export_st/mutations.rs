@@ -40,10 +40,13 @@ fn without_parentheses(text: &str) -> String {
     })
 }
 
-/// The declaration of `name` with another last digit: the next number of double precision or nearly so.
+/// The number that `name` begins with, with another last digit: the next one of double precision or nearly so.
 fn next_digit(text: &str, name: &str) -> String {
-    let line =
-        text.lines().find(|line| line.trim_start().starts_with(&format!("{name} : "))).expect("declared");
+    let number = |line: &&str| {
+        let value = line.trim_start().strip_prefix(&format!("{name} := "))?.split_once(';')?.0;
+        value.parse::<f64>().ok()
+    };
+    let line = text.lines().find(|line| number(line).is_some()).expect("a number is assigned");
     let (before, value) = line.split_once(" := ").expect("a value");
     let (value, after) = value.split_once(';').expect("its end");
     let (digits, exponent) =

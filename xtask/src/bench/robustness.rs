@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::field;
-use crate::rungs;
+use crate::program;
 use crate::shell::{Cmd, Outcome};
 use crate::usage::measured;
 
@@ -46,7 +46,7 @@ pub(super) fn run(root: &Path, folder: &Path) -> Outcome {
         1e3 * floor / samples,
         simulations / floor
     );
-    let program = rungs::program(root)?;
+    let program = program::shipped(root)?;
     let study = |samples: u64, out: &str| {
         Cmd::new(&program, root)
             .args([

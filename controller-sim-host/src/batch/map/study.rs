@@ -266,7 +266,7 @@ impl MapStudy {
             let text = self.expression(self.place(rows.start).0);
             let parsed = parse(&text);
             let mut plant = match &parsed {
-                Ok(plant) => Ok(OnePlant::new(self, &name, &text, plant)),
+                Ok(plant) => Ok(OnePlant::new(self, plant)),
                 Err(errors) => Err(errors.first().map_or("it is no plant", |error| &*error.message)),
             };
             let mut made = Vec::with_capacity(rows.len());
@@ -323,14 +323,8 @@ struct OnePlant<'a> {
 }
 
 impl<'a> OnePlant<'a> {
-    fn new(study: &'a MapStudy, name: &str, text: &str, plant: &'a TransferFunction) -> Self {
-        let named = NamedPlant {
-            name: name.to_owned(),
-            family: String::new(),
-            expression: text.to_owned(),
-            plant: plant.clone(),
-        };
-        let ts = study.ts.unwrap_or_else(|| named.period());
+    fn new(study: &'a MapStudy, plant: &'a TransferFunction) -> Self {
+        let ts = study.ts.unwrap_or_else(|| NamedPlant::period(plant));
         Self { study, plant, loops: Loops::new(plant), ts }
     }
 

@@ -95,7 +95,7 @@ pub(super) fn chapter(index: usize, one: &Analysed<'_>, several: bool, with_numb
                                 &of(&a.name), loop_card.is_none(),
                             ))
                         }
-                        @if let Some(loop_card) = loop_card {
+                        @if let Some(loop_card) = loop_card.filter(|_| !several) {
                             (card::trials(&format!("{id}-trial-{}", at + 1), loop_card, &|text| sub_heading(text)))
                         }
                     }
