@@ -277,7 +277,7 @@ fn plants(arguments: &BatchArguments) -> Result<Vec<NamedPlant>, Failure> {
         Err(faults) => Err(Failure::input(trouble(faults))),
         Ok(List { plants, faults }) => {
             if !faults.is_empty() {
-                eprint!("{}\n", render_all(&trouble(faults), colours()));
+                eprintln!("{}", render_all(&trouble(faults), colours()));
             }
             Ok(plants)
         }

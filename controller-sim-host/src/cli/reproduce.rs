@@ -140,7 +140,7 @@ fn drawn(figure: &Figure, arguments: &ReproduceArguments, json: bool, command: &
         } else {
             match FileTarget::new(path, arguments.force) {
                 Ok(target) => targets.push((*kind, target)),
-                Err(error) => troubles.push(Problem::from(error).into()),
+                Err(error) => troubles.push(error.into()),
             }
         }
     }

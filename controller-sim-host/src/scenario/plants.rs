@@ -16,7 +16,7 @@ const MOST_LAGS: f64 = 1000.0;
 /// A plant as it is written; one that is not linear has its linear model where the run starts.
 #[derive(Debug, Clone)]
 pub(super) enum Written {
-    Linear(Plant),
+    Linear(Box<Plant>),
     Nonlinear(Located<Nonlinear>),
 }
 
@@ -75,7 +75,7 @@ pub(super) fn read(root: &Table<'_>, ts: Option<&Located<f64>>, latency: f64) ->
         plant.actual = actual.value;
     }
     table.finish();
-    plant.map(Written::Linear)
+    plant.map(|plant| Written::Linear(Box::new(plant)))
 }
 
 /// The plant `key`, which stands alone.
@@ -129,7 +129,7 @@ impl Written {
     /// The plant where the run starts, with its linear model there; `step` is the time between two substeps \[s\].
     pub(super) fn at(self, start: &Start, step: Option<f64>, log: &Log<'_>) -> Option<Plant> {
         let Located { value: plant, span } = match self {
-            Self::Linear(plant) => return Some(plant),
+            Self::Linear(plant) => return Some(*plant),
             Self::Nonlinear(plant) => plant,
         };
         let lag = plant.shortest_lag();

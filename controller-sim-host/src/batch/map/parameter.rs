@@ -204,7 +204,7 @@ impl Parameter {
     /// What is allowed instead.
     pub fn check(&self, value: f64) -> Result<(), String> {
         let range = match self {
-            Self::Plant(_) => (!(value.abs() <= MOST)).then_some("-1e15 to 1e15"),
+            Self::Plant(_) => (value.is_nan() || value.abs() > MOST).then_some("-1e15 to 1e15"),
             Self::Option(setting) => setting.refuses(value),
         };
         let message =
