@@ -116,7 +116,7 @@ impl LoopCard {
 /// Makes the card of the controller `index` of `scenario`. Cost: some tenths of a second, most of it runs.
 ///
 /// # Errors
-/// A cascade; a law that cannot be built in the number type; a loop without margins, an unstable one above all.
+/// A cascade; a plant that is not linear; a law that cannot be built in the number type; a loop without margins, an unstable one above all.
 pub fn loop_card(scenario: &Scenario, index: usize, request: Request) -> Result<LoopCard, String> {
     match request.precision {
         Precision::F32 => card::<f32>(scenario, index, request),
@@ -128,6 +128,12 @@ fn card<T: Real>(scenario: &Scenario, index: usize, request: Request) -> Result<
     let spec = scenario.controllers.get(index).ok_or("there is no such controller")?;
     if spec.secondary.is_some() {
         return Err("a cascade has no card: make one of its inner loop as a scenario of its own".to_owned());
+    }
+    if let Some(plant) = &scenario.nonlinear {
+        return Err(format!(
+            "the {} is not linear and has no card: `run` shows its linear model, which can have one",
+            plant.name()
+        ));
     }
     let deployed = Deployed::<T>::new(scenario, spec)?;
     let frequency = Frequency::new(&deployed)?;

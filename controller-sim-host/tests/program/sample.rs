@@ -396,6 +396,13 @@ fn mistakes_are_told() {
     let output = folder.run(&["batch", "sample", "cascade.toml"]);
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("a cascade is not analysed"));
+    // Nor a plant that is not linear: what is drawn are gains, lags and dead times.
+    folder.write("tank.toml", include_str!("../../scenarios/two-tank.toml"));
+    let output = folder.run(&["batch", "sample", "tank.toml", "--vary", "gain=+-20%"]);
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("is not linear"), "{}", text(&output.stderr));
+    let output = folder.run(&["analyze", "tank.toml", "--card"]);
+    assert!(text(&output.stderr).contains("has no card"), "{}", text(&output.stderr));
     // A range that is probably not meant.
     let shown = folder.done(&["batch", "sample", "de.toml", "-n", "3", "--vary", "lag1=2..3"]);
     assert!(shown.contains("warning: lag1 is drawn from 2 to 3, its nominal value is 1"), "{shown}");

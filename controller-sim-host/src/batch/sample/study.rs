@@ -123,8 +123,14 @@ impl SampleStudy {
     /// A study of all controllers of `scenario`.
     ///
     /// # Errors
-    /// A controller that is not analysed, such as a cascade, by its name.
+    /// A controller that is not analysed, such as a cascade, by its name; a plant that is not linear.
     pub fn new(scenario: Scenario, drawn: Seeded) -> Result<Self, String> {
+        if let Some(plant) = &scenario.nonlinear {
+            return Err(format!(
+                "the {} is not linear, and only lags, gains and dead times are drawn: `run` shows its linear model",
+                plant.name()
+            ));
+        }
         let law = |index: usize| {
             let name = scenario.controllers[index].name.trim();
             analysis::law(&scenario, index).map_err(|why| format!("{name}: {why}"))
