@@ -40,8 +40,10 @@ fn the_test_program_passes_from_its_text() {
         let (place, _) = line.split_once(" := ").expect("a value");
         let other = program.replacen(line, &format!("{place} := 1.0E10;"), 1);
         assert_eq!(verdict(cc, &name, &other, &block, 221), [1.0, 0.0, 1.0, 77.0], "{name}");
-        // A block that adds where it should subtract.
-        let found = verdict(cc, &name, &program, &swapped(&block, " - ", " + "), 221);
-        assert!(found[..2] == [1.0, 0.0] && found[2] > 10.0, "{found:?}");
+        // A block that subtracts where it should add, or divides where it should multiply.
+        for (right, wrong) in [(" + ", " - "), (" * ", " / ")] {
+            let found = verdict(cc, &name, &program, &swapped(&block, right, wrong), 221);
+            assert!(found[..2] == [1.0, 0.0] && found[2] > 10.0, "{right}: {found:?}");
+        }
     }
 }
