@@ -30,6 +30,13 @@ const STUDIES: [(&str, &[&str]); 6] = [
     ("analyze-blocks", &["analyze", "latency.toml"]),
 ];
 
+/// Pages of many loops: the name, and the words of the command.
+const SHEETS: [(&str, &[&str]); 3] = [
+    ("figure", &["reproduce", "--figure", "dob-10"]),
+    ("map", &["batch", "map", "--x", "L=0.1:0.9:5", "--y", "alpha_ratio=0.01:100:5:log", "--at", "ms=1.4"]),
+    ("samples", &["batch", "sample", "first.toml", "-n", "40", "--vary", "gain=+-10%", "--quiet"]),
+];
+
 /// Samples of the long page.
 const LONG: u64 = 1_000_000;
 /// Most bytes of the long page: one that is decimated has far less, one that is not has 50 times as much.
@@ -94,7 +101,7 @@ fn studies(root: &Path, program: &Path, pages: &Path) -> Outcome<Vec<String>> {
         Cmd::new(program, pages).args(words).args(["--report", &page]).capture()?;
         Ok(page)
     };
-    STUDIES.into_iter().map(build).collect()
+    STUDIES.into_iter().chain(SHEETS).map(build).collect()
 }
 
 /// The page of a long noisy run, which must stay small; gives its name.

@@ -116,7 +116,7 @@ fn table(group: &Group, id: &str) -> Markup {
 
 fn names(groups: &[Group]) -> Markup {
     html! {
-        figure class="plot" { ul class="legend" {
+        div class="plot" { ul class="legend" {
             @for (index, group) in groups.iter().enumerate() { (legend::line(&controller(index), &group.controller)) }
         } }
     }

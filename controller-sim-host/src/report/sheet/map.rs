@@ -33,13 +33,26 @@ pub struct Map {
     pub marks: Vec<Mark>,
 }
 
+/// How a marked point looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sign {
+    /// Filled.
+    Triangle,
+    /// Filled.
+    Square,
+    /// Filled.
+    Disc,
+    /// Not filled.
+    Ring,
+}
+
 /// A marked point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     /// Its place on the axes.
     pub at: (f64, f64),
-    /// One character.
-    pub sign: char,
+    /// How it looks.
+    pub sign: Sign,
     /// What it stands for.
     pub name: String,
 }
@@ -129,7 +142,7 @@ pub(super) fn inner(map: &Map, x: &Axis, log: bool, size: (f64, f64)) -> (Axis, 
         }
         @for mark in &map.marks {
             svg class="p" x=(percent(x.share(mark.at.0))) {
-                text class="t sign" y=(pixel((1.0 - y.share(mark.at.1)) * size.1 + 5.0)) { (mark.sign) title { (mark.name) } }
+                (sign(mark, (1.0 - y.share(mark.at.1)) * size.1))
             }
         }
         @for Label { at, level } in &labels {
@@ -143,6 +156,18 @@ pub(super) fn inner(map: &Map, x: &Axis, log: bool, size: (f64, f64)) -> (Axis, 
         }
     };
     (y, content, caption)
+}
+
+/// The sign of a mark at this height \[px\]: a shape, so that two of them may lie on each other.
+fn sign(mark: &Mark, at: f64) -> Markup {
+    html! {
+        @match mark.sign {
+            Sign::Triangle => { path class="sign" d={ "M0 " (pixel(at - 5.0)) "l5 9h-10z" } { title { (mark.name) } } }
+            Sign::Square => { path class="sign" d={ "M-4 " (pixel(at - 4.0)) "h8v8h-8z" } { title { (mark.name) } } }
+            Sign::Disc => { circle class="sign" cy=(pixel(at)) r="4" { title { (mark.name) } } }
+            Sign::Ring => { circle class="sign ring" cy=(pixel(at)) r="5" { title { (mark.name) } } }
+        }
+    }
 }
 
 /// Places of the marks \[px\].

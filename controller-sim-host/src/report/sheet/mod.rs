@@ -9,7 +9,7 @@ mod page;
 mod svg;
 
 pub use curves::{Curve, Look};
-pub use map::{Map, Mark};
+pub use map::{Map, Mark, Sign};
 pub(crate) use page::page;
 pub(crate) use svg::svg;
 

@@ -5,7 +5,7 @@ use super::super::bench::{Bench, Stop};
 use super::titled;
 use crate::batch::Stopped;
 use crate::batch::map::{Axis, MapStudy, MapValues, Metric, Parameter, Setting, Template};
-use crate::report::sheet::{Content, Map, Mark, Panel, Scale, Sheet};
+use crate::report::sheet::{Content, Map, Mark, Panel, Scale, Sheet, Sign};
 use crate::report::{MapLook, map_sheet};
 use controller_design::design::Method;
 use std::sync::atomic::AtomicU64;
@@ -115,7 +115,7 @@ pub(super) fn maps(bench: &Bench<'_>) -> Result<Sheet, Stop> {
 }
 
 fn marks() -> Vec<Mark> {
-    let of = |l: f64, sign: char, name: &str| {
+    let of = |l: f64, sign: Sign, name: &str| {
         [1.0, 0.1, 0.01].map(|alpha| Mark {
             at: (l, alpha),
             sign,
@@ -123,10 +123,10 @@ fn marks() -> Vec<Mark> {
         })
     };
     let all = [
-        of(3.2 / 83.5, '\u{25cb}', "tank"),
-        of(0.05, '\u{25b2}', "plant 1"),
-        of(0.2, '\u{25a0}', "plant 2"),
-        of(0.9, '\u{25cf}', "plant 3"),
+        of(3.2 / 83.5, Sign::Ring, "tank"),
+        of(0.05, Sign::Triangle, "plant 1"),
+        of(0.2, Sign::Square, "plant 2"),
+        of(0.9, Sign::Disc, "plant 3"),
     ];
     all.into_iter().flatten().collect()
 }
