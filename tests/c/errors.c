@@ -182,12 +182,13 @@ static void not_initialised(void)
     EXPECT(CTL_OK, FN(step)(state, size, &in, &out));
 }
 
-/* Over the first words of a block: each added to what is rotated by five bits. */
+/* Over the first words of a block: each is mixed in by a product and a shift. */
 static uint32_t sum_of(const uint32_t *from)
 {
     uint32_t sum = 0x9E3779B9u;
     for (int i = 0; i < 4; i++) {
-        sum = (sum << 5 | sum >> 27) + from[i];
+        sum = (sum ^ from[i]) * 0x9E3779B1u;
+        sum ^= sum >> 16;
     }
     return sum;
 }
