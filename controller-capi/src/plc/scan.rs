@@ -92,10 +92,12 @@ unsafe fn run<T: Number>(state: *mut c_void, size: usize, vars: &mut Vars<T>) ->
     Ok(())
 }
 
-/// The output that the variables still hold from a call before, if there was one.
+/// The output that the variables still hold, if anybody has ever written them: a call before, which left a mode, or an error
+/// and [`NOT_RUNNING`](status::NOT_RUNNING); or a program that hands over its own copy of OP alone.
 fn last_output<T: Number>(vars: &Vars<T>) -> Option<T> {
-    let op = vars.results.op;
-    (vars.reports.mode != 0 && op >= T::from_f64(-1e12) && op <= T::from_f64(1e12)).then_some(op)
+    let (op, reports) = (vars.results.op, &vars.reports);
+    let written = op != T::ZERO || reports.mode != 0 || reports.status & status::NOT_RUNNING != 0;
+    (written && op >= T::from_f64(-1e12) && op <= T::from_f64(1e12)).then_some(op)
 }
 
 /// Hands the configuration of these parameters to `take`.

@@ -148,6 +148,47 @@ fn a_loop_whose_memory_is_lost_goes_on_from_its_output() {
     assert!((next - op).abs() <= step + 1e-9, "{op} {next}");
 }
 
+/// OP that the variables hold counts, whatever has come between the damage and the first good call.
+#[test]
+fn a_loop_whose_memory_is_lost_goes_on_from_its_output_after_an_error() {
+    type Wrong = fn(&mut Rig<f64>);
+    let refused: Wrong = |rig| rig.vars.settings.tn = -1.0;
+    let nothing: Wrong = |_| ();
+    for (wrong, size_too_small, calls) in
+        [(refused, false, 1), (refused, false, 3), (nothing, true, 1), (refused, true, 2)]
+    {
+        for limits in [(0.0, 100.0), (-50.0, 50.0)] {
+            let mut rig = pi::<f64>();
+            (rig.vars.settings.op_lo, rig.vars.settings.op_hi) = limits;
+            for _ in 0..300 {
+                rig.run(50.0, if limits.0 < 0.0 { 52.0 } else { 48.0 });
+            }
+            let op = rig.op();
+            assert!((op - 30.0).abs() > 10.0, "{op}");
+            let parameters = rig.vars.settings;
+            for call in 0..calls {
+                // Another byte in each call.
+                rig.memory[300 + call] ^= 0x10;
+                wrong(&mut rig);
+                let all = rig.memory.len();
+                let size = if size_too_small { 64 } else { all };
+                let state = rig.memory.as_mut_ptr().cast();
+                assert_ne!(unsafe { f64::call(state, size, &mut rig.vars) }, 0);
+                assert_eq!((rig.op(), rig.vars.reports.mode), (op, 0));
+            }
+            rig.vars.settings = parameters;
+            let next = rig.run(50.0, 50.0);
+            assert!(rig.has(status::STATE_LOST));
+            assert!((next - op).abs() < 1e-9, "{op} {next}");
+        }
+    }
+    // A program that keeps OP alone, as one that makes the variables anew in each call.
+    let mut rig = pi::<f64>();
+    rig.memory.fill(0x5A);
+    rig.vars.results.op = 61.0;
+    assert_eq!(rig.run(50.0, 50.0), 61.0);
+}
+
 #[test]
 fn without_a_loop_nobody_is_in_automatic() {
     let mut rig = pi::<f64>();
