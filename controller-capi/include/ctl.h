@@ -21,11 +21,13 @@
  *   - It holds no address: between two calls it may be moved and copied as bytes, into any memory aligned to CTL_F32_ALIGN.
  *   - Only the library that wrote it can read it. For another build (new firmware) use save and restore.
  *   - `size` in each call is the number of bytes at `state`, as in `sizeof loop`.
- *   - Whatever bits it holds, no call reads or writes beyond it. Damage to its parameters is found (CTL_ERROR_DAMAGED).
+ *   - Whatever bits it holds, no call reads or writes beyond it. Damage to its parameters is found, damage to its
+ *     state where a number is no longer finite (CTL_ERROR_DAMAGED).
  *   - One block is used by one call at a time. Different blocks do not disturb each other: there are no globals.
  *
- * Every function with a status gives CTL_OK or an error, and on an error leaves outputs and block as they were. Nothing
- * allocates, calls back, or unwinds. Bad inputs of a step are no error: the output is written, and its status says so.
+ * Every function with a status gives CTL_OK or an error, and on an error leaves outputs and block as they were; but a step
+ * that finds its state damaged leaves the outputs alone and a block that gives CTL_ERROR_DAMAGED in every call until init.
+ * Nothing allocates, calls back, or unwinds. Bad inputs of a step are no error: the output is written, and its status says so.
  *
  * Units: [y] that of the measurement and the set-point, [u] that of the output, [s] seconds.
  */
@@ -58,7 +60,7 @@ extern "C" {
 #define CTL_ERROR_SNAPSHOT_SHAPE 11    /* a snapshot of a block of another shape */
 #define CTL_ERROR_SNAPSHOT_CHECKSUM 12 /* a damaged snapshot */
 #define CTL_ERROR_SNAPSHOT_INVALID 13  /* an intact snapshot that this configuration cannot go on from */
-#define CTL_ERROR_DAMAGED 14           /* something has written over the block's law or state */
+#define CTL_ERROR_DAMAGED 14           /* something has written over the block's law or state; until init */
 
 /* ---- Modes ----------------------------------------------------------------------------------------------------- */
 
@@ -408,7 +410,11 @@ int32_t ctl_f32_settle(void *state, size_t size, float r, float y, float u);
 /* The mode of steps whose input says CTL_MODE_AS_SET: CTL_MODE_OFF to CTL_MODE_HOLD. */
 int32_t ctl_f32_set_mode(void *state, size_t size, int32_t mode);
 
-/* One sample. Fails only if it cannot run: null, alignment, size, not initialised, version. */
+/*
+ * One sample. Fails only if it cannot run (null, alignment, size, not initialised, version) or finds damage
+ * (CTL_ERROR_DAMAGED). Then the output is not written: leave the actuator as it is, or in its safe state. After damage every
+ * call gives this error until init, which the snapshot of restore, or settle at the applied output, may follow.
+ */
 int32_t ctl_f32_step(void *state, size_t size, const ctl_f32_input *input, ctl_f32_output *output);
 
 /*

@@ -6,9 +6,11 @@ use crate::config::Config;
 use crate::fault::{Error, Faults};
 use crate::io::{Input, Output};
 use crate::snapshot;
+use core::ffi::c_void;
 
 const DELAY: u32 = 9;
 const GUARD: usize = 8;
+const UNTOUCHED: u32 = 0xC3C3_C3C3;
 const FENCE: u64 = 0xA5A5_A5A5_A5A5_A5A5;
 /// Words of 8 bytes, enough for both number types.
 const WORDS: usize = 256;
@@ -100,7 +102,7 @@ fn any_bits<T: Number>(compensator: i32, seed: u64) {
             let mut output = Output::default();
             let samples = chance.word() % 2000;
             let what = chance.word() % 8;
-            let (mut words, mut written) = ([0_u32; 256], 0);
+            let (mut words, mut written) = ([UNTOUCHED; 256], 0);
             // SAFETY: as above.
             unsafe {
                 match what {
@@ -112,6 +114,8 @@ fn any_bits<T: Number>(compensator: i32, seed: u64) {
                         if saved == Ok(()) {
                             // What it has saved may be no state at all.
                             let _ = snapshot::restore::<T>(state, size, words.as_ptr(), written);
+                        } else {
+                            assert!(written == 0 && words.iter().all(|&word| word == UNTOUCHED));
                         }
                     }
                     4 => known(calls::settle::<T>(state, size, [T::ZERO; 3])),
@@ -129,5 +133,60 @@ fn no_bits_stop_a_call_or_lead_it_astray() {
     for compensator in 0..3 {
         any_bits::<f32>(compensator, 1);
         any_bits::<f64>(compensator, 2);
+    }
+}
+
+/// Numbers of the state that are near the largest ones: once a step has found damage every call does, until `init`.
+fn huge<T: Number>(compensator: i32) {
+    let size = crate::block::size::<T>(DELAY);
+    let config = config(compensator);
+    let mut memory = [0_u64; WORDS];
+    let state: *mut c_void = memory.as_mut_ptr().cast();
+    let mut faults = Faults::default();
+    let (mut chance, mut found) = (Chance(3), 0);
+    let count = size / size_of::<T>();
+    // SAFETY: so many bytes of this test's, aligned, and structures of its own.
+    let step = |r: f64, y: f64| unsafe {
+        let input = Input { r: T::from_f64(r), y: T::from_f64(y), ..Input::default() };
+        let mut output = Output::default();
+        calls::step::<T>(state, size, &input, &mut output)
+    };
+    for _ in 0..4000 {
+        // SAFETY: as above.
+        assert_eq!(unsafe { calls::init::<T>(state, size, &config, &mut faults) }, Ok(()));
+        (0..5_u32).for_each(|k| assert_eq!(step(0.5, 0.1 * f64::from(k)), Ok(())));
+        for _ in 0..1 + chance.word() % 3 {
+            let at = 32 / size_of::<T>() + chance.word() as usize % (count - 32 / size_of::<T>());
+            let large = T::from_f64(if chance.word().is_multiple_of(2) { 0.9 } else { -0.9 } * T::LARGEST);
+            // SAFETY: inside the block.
+            unsafe { state.cast::<T>().add(at).write(large) };
+        }
+        // SAFETY: as above.
+        if unsafe { Block::<T>::open(state, size) }.is_err() {
+            continue;
+        }
+        if (0..100).all(|_| step(0.5, 0.2) == Ok(())) {
+            continue;
+        }
+        found += 1;
+        (0..100).for_each(|k| assert_eq!(step(0.5, 0.2), Err(Error::Damaged), "{k} later"));
+        let mut output = Output::default();
+        // SAFETY: as above.
+        unsafe {
+            assert_eq!(calls::read::<T>(state, size, &mut output), Err(Error::Damaged));
+            assert_eq!(calls::settle::<T>(state, size, [T::ZERO; 3]), Err(Error::Damaged));
+            assert_eq!(calls::adopt::<T>(state, size, &config, &mut faults), Err(Error::Damaged));
+            assert_eq!(calls::init::<T>(state, size, &config, &mut faults), Ok(()));
+        }
+        assert_eq!(step(0.5, 0.2), Ok(()));
+    }
+    assert!(found > 20, "{found}");
+}
+
+#[test]
+fn damage_that_a_step_has_found_stays_until_init() {
+    for compensator in 0..3 {
+        huge::<f32>(compensator);
+        huge::<f64>(compensator);
     }
 }

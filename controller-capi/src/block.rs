@@ -284,6 +284,12 @@ impl<T: Number> Block<T> {
         self.header().law = law;
     }
 
+    /// Makes the sum of the law one that no call accepts, until the block is initialised again.
+    pub(crate) fn condemn(&mut self) {
+        let law = self.law_sum();
+        self.header().law = !law;
+    }
+
     /// A sum over state and delay memory, and the law's.
     pub(crate) fn sums(&mut self) -> [u32; 2] {
         [self.with(|l| l.state_sum(), |l| l.state_sum()), self.header().law]

@@ -1,4 +1,5 @@
-//! What each function does, for both number types. Errors leave everything as it was.
+//! What each function does, for both number types. Errors leave everything as it was, but for a step that finds damage in the
+//! state.
 
 use crate::block::{self, Block, Cells, Delayed, Either, Loop, Memory, Number, check_pointer};
 use crate::block::{MAX_DELAY, cells_in, without_address};
@@ -308,8 +309,9 @@ impl<T: Number> Block<T> {
     pub(crate) fn step(&mut self, input: &Input<T>) -> Result<Output<T>, Error> {
         let (mode, status) = self.header().ask(input.mode);
         let out = self.with(|l| l.step(input, mode, status), |l| l.step(input, mode, status));
-        // No undamaged state gives such numbers, and they do not go away.
+        // No undamaged state gives such numbers. Some of them go away, into a state that is no better: so the block stays damaged.
         if not_finite(out.v) | not_finite(out.pd) | not_finite(out.d_hat) {
+            self.condemn();
             return Err(Error::Damaged);
         }
         self.set_last(out);
