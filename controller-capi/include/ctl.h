@@ -26,7 +26,7 @@
  *   - One block is used by one call at a time. Different blocks do not disturb each other: there are no globals.
  *
  * Every function with a status gives CTL_OK or an error, and on an error leaves outputs and block as they were; but a step
- * that finds its state damaged leaves the outputs alone and a block that gives CTL_ERROR_DAMAGED in every call until init.
+ * that finds its state damaged leaves the outputs alone and a block that gives CTL_ERROR_DAMAGED to every call until init.
  * Nothing allocates, calls back, or unwinds. Bad inputs of a step are no error: the output is written, and its status says so.
  *
  * Units: [y] that of the measurement and the set-point, [u] that of the output, [s] seconds.
@@ -413,7 +413,7 @@ int32_t ctl_f32_set_mode(void *state, size_t size, int32_t mode);
 /*
  * One sample. Fails only if it cannot run (null, alignment, size, not initialised, version) or finds damage
  * (CTL_ERROR_DAMAGED). Then the output is not written: leave the actuator as it is, or in its safe state. After damage every
- * call gives this error until init, which the snapshot of restore, or settle at the applied output, may follow.
+ * call on the block gives this error until init; after init, restore or settle at the applied output.
  */
 int32_t ctl_f32_step(void *state, size_t size, const ctl_f32_input *input, ctl_f32_output *output);
 

@@ -4,6 +4,7 @@ use crate::block::{Block, Number};
 use crate::calls;
 use crate::config::Config;
 use crate::fault::{Error, Faults};
+use crate::header::Header;
 use crate::io::{Input, Output};
 use crate::snapshot;
 use core::ffi::c_void;
@@ -144,7 +145,7 @@ fn huge<T: Number>(compensator: i32) {
     let state: *mut c_void = memory.as_mut_ptr().cast();
     let mut faults = Faults::default();
     let (mut chance, mut found) = (Chance(3), 0);
-    let count = size / size_of::<T>();
+    let bytes = size_of::<T>();
     // SAFETY: so many bytes of this test's, aligned, and structures of its own.
     let step = |r: f64, y: f64| unsafe {
         let input = Input { r: T::from_f64(r), y: T::from_f64(y), ..Input::default() };
@@ -156,10 +157,11 @@ fn huge<T: Number>(compensator: i32) {
         assert_eq!(unsafe { calls::init::<T>(state, size, &config, &mut faults) }, Ok(()));
         (0..5_u32).for_each(|k| assert_eq!(step(0.5, 0.1 * f64::from(k)), Ok(())));
         for _ in 0..1 + chance.word() % 3 {
-            let at = 32 / size_of::<T>() + chance.word() as usize % (count - 32 / size_of::<T>());
+            // A number behind the header.
+            let at = size_of::<Header>() + chance.word() as usize * bytes % (size - size_of::<Header>());
             let large = T::from_f64(if chance.word().is_multiple_of(2) { 0.9 } else { -0.9 } * T::LARGEST);
             // SAFETY: inside the block.
-            unsafe { state.cast::<T>().add(at).write(large) };
+            unsafe { state.byte_add(at).cast::<T>().write(large) };
         }
         // SAFETY: as above.
         if unsafe { Block::<T>::open(state, size) }.is_err() {

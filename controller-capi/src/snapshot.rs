@@ -3,7 +3,7 @@
 //! Word 0: the format. Word 1: kind of loop and modes. Word 2: the complement of word 1. Then the core's words, which carry
 //! their own version, shape and checksum.
 
-use crate::block::{Block, Loop, Number, check_pointer};
+use crate::block::{Block, Loop, MAX_DELAY, Number, check_pointer};
 use crate::fault::Error;
 use crate::header::Kind;
 use crate::io::{Output, mode};
@@ -15,6 +15,9 @@ use core::ffi::c_void;
 const FORMAT: u32 = 0x4354_4C01;
 /// Words before those of the core.
 const FRAME: usize = 3;
+
+// The core numbers the words of a snapshot with 28 bits. Two for each cell, and more than those of every other number.
+const _: () = assert!(2 * (MAX_DELAY as usize + 1) + 1024 < 1 << 28);
 
 type Done = Result<(), Error>;
 
@@ -64,6 +67,8 @@ pub(crate) unsafe fn save<T: Number>(
     if capacity < total {
         return Err(Error::Buffer);
     }
+    // From here nothing fails, as an error must leave the words alone: the core refuses a list that is shorter than what it has
+    // counted above, and more words than any block has.
     // SAFETY: so many words are the caller's; they are written before they are looked at.
     let list = unsafe {
         to.write_bytes(0, total);

@@ -106,9 +106,9 @@ mod tests {
             [0; WORDS],
             [u32::MAX; WORDS],
             // A delay line of f32 in which a measurement rises slowly.
-            list(|i| (44.0 + i as f32 / 128.0).to_bits()),
+            list(|i| f32::from_f64(44.0 + f64::from(i) / 128.0).to_bits()),
             // Of f64 that f32 could hold: every other word is 0.
-            list(|i| half(f64::from(i / 2) * 0.25, i)),
+            list(|i| half(f64::from(i & !1) / 8.0, i)),
             // Of f64 with opposite signs in turn.
             list(|i| half(if i % 4 < 2 { 0.1 } else { -0.1 }, i)),
         ]

@@ -45,6 +45,8 @@ pub(crate) struct Instance<T> {
     seal: u32,
     /// Over everything else and over the loop, when the last call ended.
     sum: u32,
+    /// So that a header may be read wherever it begins in the first 16 bytes: none of them is padding.
+    spare: u32,
     /// The parameters in force.
     pub(crate) parameters: Parameters<T>,
     pub(crate) refused: Refused,
@@ -67,6 +69,7 @@ impl<T: Number> Instance<T> {
             magic: T::FB_MAGIC,
             seal: !T::FB_MAGIC,
             sum: 0,
+            spare: 0,
             parameters,
             refused: Refused::default(),
             watch: Watch::default(),
@@ -159,12 +162,16 @@ impl Place {
         let memory: *mut u8 = state.cast();
         let offset = memory.addr().wrapping_neg() & (ALIGN - 1);
         let place = Self { start: memory.wrapping_add(offset), loop_size };
-        // SAFETY: the offsets are less than what `usable` leaves, and a header is smaller than it.
+        // SAFETY: the offsets are less than what `usable` leaves, and a header is smaller than it. Any bits are two words. Where an
+        // instance is, the search ends at its beginning and has read no more than 8 bytes of an address up to 7 behind it: none
+        // of its padding, see `spare`. Everything else is bytes that came over the interface from a caller, who keeps
+        // and copies them as bytes: whatever they are, they have values.
         let header = |at: usize| unsafe { memory.wrapping_add(at).cast::<[u32; 2]>().read_unaligned() };
         let Some(found) =
             core::iter::once(offset).chain(0..ALIGN).find(|&at| header(at) == [T::FB_MAGIC, !T::FB_MAGIC])
         else {
-            // SAFETY: there is room for an instance and the beginning of a block; any bits are these.
+            // SAFETY: there is room for an instance and the beginning of a block; any bits are these. A comparison reads fields,
+            // not what is between them, and the first word of a block is its header's.
             let nothing = unsafe {
                 *place.instance::<T>() == Instance::nothing()
                     && place.loop_memory::<T>().cast::<u64>().read() == 0
@@ -172,8 +179,8 @@ impl Place {
             return Ok((place, if nothing { Contents::Nothing } else { Contents::Unknown }));
         };
         if found != offset {
-            // SAFETY: both are `usable` bytes within the `size` bytes of the caller; what the move leaves over is cleared, so
-            // that it is not found again.
+            // SAFETY: both are `usable` bytes within the `size` bytes of the caller; a copy of bytes takes padding as it is. What
+            // the move leaves over is cleared, so that it is not found again.
             unsafe {
                 memory.wrapping_add(found).copy_to(place.start, usable);
                 let (rest, count) = if found < offset {
@@ -213,3 +220,6 @@ impl Place {
         unsafe { self.start.cast::<Instance<T>>().write(instance) }
     }
 }
+
+const _: () = assert!(core::mem::offset_of!(Instance<f32>, parameters) == 16);
+const _: () = assert!(core::mem::offset_of!(Instance<f64>, parameters) == 16);
