@@ -12,6 +12,8 @@ mod archive;
 mod bits;
 #[path = "export_st/compiled.rs"]
 mod compiled;
+#[path = "export_st/damaged.rs"]
+mod damaged;
 #[path = "export_st/drive.rs"]
 mod drive;
 #[path = "export_st/fixtures.rs"]

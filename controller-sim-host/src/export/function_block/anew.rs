@@ -21,8 +21,7 @@ pub(super) fn begin(b: &mut Builder, plan: &Plan) {
         },
         |b| {
             if let Some(chains) = &plan.compensator {
-                let last = i32::try_from(chains.capacity).unwrap_or(i32::MAX) - 1;
-                b.repeat("CELL", 0, last, |b| b.set_cell("DELAY", "CELL", x("ZERO")));
+                b.repeat("CELL", 0, chains.last_cell(), |b| b.set_cell("DELAY", "CELL", x("ZERO")));
             }
             b.set("PV_ENG", x("ZERO"));
             b.set("U", x("OP_INIT"));

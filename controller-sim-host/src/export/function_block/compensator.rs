@@ -75,28 +75,38 @@ fn estimate(b: &mut Builder, chains: &Chains, y: &str, lags: Lags) {
 /// One sample: `D_HAT` and `UF_NEW` from the measurement `y` and the output `applied`.
 pub(super) fn sample(b: &mut Builder, chains: &Chains, y: &str, applied: &str) {
     b.note("disturbance compensator: the applied output into the delay line, the delayed one out of it");
-    b.set("NEWEST", x("NEWEST") + number(1));
-    b.when(x("NEWEST").above(x("LAST_CELL")), |b| b.set("NEWEST", number(0)));
+    b.either(
+        outside(chains.last_cell() - 1),
+        |b| b.set("NEWEST", number(0)),
+        |b| b.set("NEWEST", x("NEWEST") + number(1)),
+    );
     b.set_cell("DELAY", "NEWEST", x(applied));
-    tap(b, "DELAY_SAMPLES");
+    tap(b, chains, chains.delay);
     estimate(b, chains, y, Lags::Move);
     b.note("d_hat = x at the point of initialisation - x, u_f = -gain*d_hat");
     b.set("DH", x("EST_0") - x("EST"));
     b.set("UF_NEW", -(x("COMP_GAIN") * x("DH")));
 }
 
-/// `U_DELAYED`: the sample that was pushed `samples` pushes before the newest.
-fn tap(b: &mut Builder, samples: &str) {
-    b.set("CELL", x("NEWEST") - x(samples));
-    b.when(x("CELL").below(number(0)), |b| b.set("CELL", x("CELL") + x("CELLS")));
+/// Whether `NEWEST` is not one of 0 to `last`. A number in the text and not a variable, so that nothing in memory, damaged or
+/// not, leads out of the delay line.
+fn outside(last: i32) -> Expression {
+    x("NEWEST").below(number(0)).or(x("NEWEST").above(number(last)))
+}
+
+/// `U_DELAYED`: the sample that was pushed `samples` pushes before the newest. `NEWEST` is a cell, and `samples` less than there
+/// are cells.
+fn tap(b: &mut Builder, chains: &Chains, samples: usize) {
+    let whole = |n: usize| number(i32::try_from(n).unwrap_or(i32::MAX));
+    b.set("CELL", x("NEWEST") - whole(samples));
+    b.when(x("CELL").below(number(0)), |b| b.set("CELL", x("CELL") + whole(chains.capacity)));
     b.set("U_DELAYED", Expression::Cell("DELAY".to_owned(), "CELL".to_owned()));
 }
 
 /// Everything at rest at the measurement `y` and the output `u`.
 pub(super) fn settle(b: &mut Builder, chains: &Chains, y: &str, u: &str) {
     b.note("compensator at rest: the whole delay line at the output");
-    let last = i32::try_from(chains.capacity).unwrap_or(i32::MAX) - 1;
-    b.repeat("CELL", 0, last, |b| b.set_cell("DELAY", "CELL", x(u)));
+    b.repeat("CELL", 0, chains.last_cell(), |b| b.set_cell("DELAY", "CELL", x(u)));
     for n in 1..=chains.g.len() {
         let (w, carry) = lag("WU", n);
         restart(b, &w, &carry, x(u));
@@ -132,7 +142,8 @@ pub(super) fn refer_anew(b: &mut Builder, chains: &Chains, y: &str, u: &str) {
     if chains.delay == 0 {
         b.set("U_DELAYED", x(u));
     } else {
-        tap(b, "DELAY_LESS_ONE");
+        b.when(outside(chains.last_cell()), |b| b.set("NEWEST", number(0)));
+        tap(b, chains, chains.delay - 1);
     }
     estimate(b, chains, y, Lags::Keep);
     b.set("DH", x("EST_0") - x("EST"));

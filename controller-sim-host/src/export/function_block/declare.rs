@@ -280,16 +280,6 @@ fn compensator(b: &mut Builder, chains: &Chains) {
     }
     real("INV_GAIN", chains.inv_gain, "compensator: 1/K of the model [OP unit / PV unit]");
     real("COMP_GAIN", chains.gain, "compensator: share of the disturbance that is fed back");
-    let mut count = |name: &str, value: usize, comment: &str| {
-        let value = i32::try_from(value).unwrap_or(i32::MAX);
-        b.declare(Role::Named, Type::Count, name, Initial::Count(value), comment);
-    };
-    count("CELLS", chains.capacity, "cells of the delay line");
-    count("LAST_CELL", chains.capacity.saturating_sub(1), "index of the last one");
-    count("DELAY_SAMPLES", chains.delay, "samples of delay");
-    if chains.delay > 0 {
-        count("DELAY_LESS_ONE", chains.delay - 1, "one less");
-    }
 }
 
 fn state(b: &mut Builder, plan: &Plan) {

@@ -164,6 +164,13 @@ impl Plan {
     }
 }
 
+impl Chains {
+    /// Index of the last cell of the delay line.
+    pub(super) fn last_cell(&self) -> i32 {
+        i32::try_from(self.capacity).unwrap_or(i32::MAX) - 1
+    }
+}
+
 impl Tuning {
     /// `None` for a controller that the form `KP*(1 + 1/(TN*s) + TV*s)` does not reach with a `TN` above 0 and a `TV` not
     /// below.
