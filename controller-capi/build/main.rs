@@ -21,6 +21,6 @@ fn main() {
     }
     match sources::digest(&folders) {
         Ok(digest) => println!("cargo:rustc-env=CTL_SOURCES={digest:016x}"),
-        Err(why) => println!("cargo:error=the sources of a block cannot be read: {why}"),
+        Err(why) => println!("cargo::error=the sources of a block cannot be read: {why}"),
     }
 }
