@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// The header.
 pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
-    let upper = head::name(export.name()).replacen("FB_", "LOOP_", 1);
+    let upper = head::name(export).replacen("FB_", "LOOP_", 1);
     let lower = upper.to_lowercase();
     let variant = match export.precision {
         Precision::F32 => "F32",

@@ -6,29 +6,47 @@ use crate::simulate::Precision;
 /// Longest name of a block: what the oldest programming systems take.
 const LONGEST: usize = 24;
 
-/// The name of the block: letters, digits and single underscores of the controller's name behind `FB_`. What does not fit, or
-/// has no such letter, leaves four hexadecimal digits of the whole name, so that two loops keep two names.
-pub(super) fn name(controller: &str) -> String {
-    let separates = |c: char| matches!(c, ' ' | '-' | '_' | '+' | '.' | '/');
-    let words: Vec<String> = controller
-        .split(|c: char| !c.is_ascii_alphanumeric())
-        .filter(|word| !word.is_empty())
-        .map(str::to_ascii_uppercase)
-        .collect();
-    let whole = format!("FB_{}", words.join("_"));
-    let lost = controller.chars().any(|c| !c.is_ascii_alphanumeric() && !separates(c));
-    if words.is_empty() {
-        return if controller.is_empty() {
-            "FB_LOOP".to_owned()
-        } else {
-            format!("FB_LOOP_{}", digits(controller))
-        };
+/// The name of the exported block, see [`among`].
+pub(super) fn name(export: &Export<'_>) -> String {
+    let loops: Vec<&str> = export.scenario.controllers.iter().map(|spec| spec.name.trim()).collect();
+    among(export.name(), &loops)
+}
+
+/// The name of the block of `controller`: the words of its name in capitals behind `FB_`. Four hexadecimal digits of a hash of
+/// the whole name follow when the words do not tell it apart: when it is not plain, or another one of `loops`, those of the
+/// same file, has the same words.
+///
+/// Two names of a file thus keep two names of blocks, unless both have digits, and by chance, once in 65536, the same ones.
+/// Plain names of two files that differ in case or in the separator only, such as `PI DOB` and `pi-dob`, have one name.
+fn among(controller: &str, loops: &[&str]) -> String {
+    if controller.is_empty() {
+        return "FB_LOOP".to_owned();
     }
-    if !lost && whole.len() <= LONGEST {
-        return whole;
+    let same = |name: &str| {
+        loops.iter().any(|other| *other != controller && readable(other).is_some_and(|other| other == name))
+    };
+    if let Some(name) = readable(controller).filter(|name| !same(name)) {
+        return name;
     }
-    let room: String = whole.chars().take(LONGEST - 5).collect();
+    let words = words(controller);
+    let words = if words.is_empty() { "LOOP".to_owned() } else { words };
+    let room: String = format!("FB_{words}").chars().take(LONGEST - 5).collect();
     format!("{}_{}", room.trim_end_matches('_'), digits(controller))
+}
+
+/// The name without digits of a plain controller's name: letters and digits, with one space, hyphen or underscore between
+/// words, short enough. `None` for another.
+fn readable(controller: &str) -> Option<String> {
+    let mut parts = controller.split([' ', '-', '_']);
+    let plain = parts.all(|word| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric()));
+    let name = format!("FB_{}", words(controller));
+    (plain && name.len() <= LONGEST).then_some(name)
+}
+
+/// The words of a name in capitals, single underscores between them.
+fn words(controller: &str) -> String {
+    let words = controller.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    words.map(str::to_ascii_uppercase).collect::<Vec<_>>().join("_")
 }
 
 /// Four digits that stand for a text: FNV-1a, folded.
@@ -109,4 +127,64 @@ pub(super) fn lines(export: &Export<'_>, origin: &str, tunable: bool, design: i3
 pub(super) fn plain(text: &str) -> String {
     let shown = |c: char| if c.is_ascii_graphic() && !"*{}$\\".contains(c) { c } else { ' ' };
     text.chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LONGEST, among, digits};
+    use std::collections::HashSet;
+
+    #[test]
+    fn plain_names_stay_readable() {
+        for (controller, block) in [
+            ("PI", "FB_PI"),
+            ("tank-2 level", "FB_TANK_2_LEVEL"),
+            ("DE_MOMI", "FB_DE_MOMI"),
+            ("abcdefghijklmnopqrstu", "FB_ABCDEFGHIJKLMNOPQRSTU"),
+        ] {
+            assert_eq!(among(controller, &[controller, "another"]), block);
+        }
+    }
+
+    #[test]
+    fn two_loops_of_a_file_keep_two_names() {
+        let loops = [
+            "PI DOB",
+            "PI - DOB",
+            "pi+dob",
+            "pi-dob",
+            "PI_DOB",
+            "pi dob",
+            "Pi.Dob",
+            "PI  DOB",
+            "_PI DOB",
+            "\u{3c0} DOB",
+            "\u{3c1} DOB",
+            "+",
+            "-",
+            "abcdefghijklmnopqrstuv",
+            "abcdefghijklmnopqrstuw",
+        ];
+        let names: HashSet<String> = loops.iter().map(|name| among(name, &loops)).collect();
+        assert_eq!(names.len(), loops.len(), "{names:?}");
+        for name in &names {
+            let plain = name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
+            assert!(plain && name.len() <= LONGEST && !name.contains("__") && !name.ends_with('_'), "{name}");
+        }
+    }
+
+    /// Without the other loops at hand, too: neither is plain.
+    #[test]
+    fn separators_that_are_not_plain_leave_digits() {
+        for controller in ["PI - DOB", "pi+dob", "PI/DOB", "PI.DOB", "-PI DOB", "PI DOB_", "PI  DOB"] {
+            assert_eq!(among(controller, &[]), format!("FB_PI_DOB_{}", digits(controller)));
+        }
+        assert_ne!(among("PI - DOB", &[]), among("pi+dob", &[]));
+    }
+
+    /// FNV-1a of the byte `a` is E40C292C by its authors' test vectors.
+    #[test]
+    fn digits_are_those_of_the_hash() {
+        assert_eq!(digits("a"), format!("{:04X}", 0xE40C ^ 0x292C));
+    }
 }

@@ -116,7 +116,7 @@ impl<'a> Export<'a> {
     /// A loop with an ADRC.
     pub fn block(&self, origin: &str) -> Result<Block, Refused> {
         let head = |tunable, design| head::lines(self, origin, tunable, design);
-        function_block::block(self, &head::name(self.name()), head).ok_or(Refused::Adrc)
+        function_block::block(self, &head::name(self), head).ok_or(Refused::Adrc)
     }
 
     /// The controller's name.

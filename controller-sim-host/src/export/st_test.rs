@@ -19,8 +19,8 @@ pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
         Precision::F32 => record::<f32>(export),
         Precision::F64 => record::<f64>(export),
     };
-    let block = head::name(export.name());
-    let name = format!("TEST_{}", block.trim_start_matches("FB_"));
+    let block = head::name(export);
+    let name = format!("TEST_{}", block.strip_prefix("FB_").unwrap_or(&block));
     let mut out = format!("PROGRAM {name}\n");
     let last = SAMPLES - 1;
     let mut head = vec![

@@ -101,7 +101,9 @@ fn names_come_from_the_controller_and_nothing_ends_a_comment() {
     let (scenario, spec) = of("PI default");
     for (name, block) in [
         ("DE-MOMI", "FB_DE_MOMI"),
-        ("  Ofen 3 / Zone  2 ", "FB_OFEN_3_ZONE_2"),
+        ("  Ofen 3 Zone-2 ", "FB_OFEN_3_ZONE_2"),
+        ("  Ofen 3 / Zone  2 ", "FB_OFEN_3_ZONE_2_F1B5"),
+        ("PI-Default", "FB_PI_DEFAULT_C43D"),
         ("*) x := 1; (* {pragma} \u{e9}", "FB_X_1_PRAGMA_18F9"),
         ("\u{65e5}\u{672c}", "FB_LOOP_7177"),
         ("a name that is longer than any PLC would take", "FB_A_NAME_THAT_IS_L_2D1A"),
