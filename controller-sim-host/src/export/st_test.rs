@@ -4,7 +4,7 @@ use super::block::{Initial, Type};
 use super::{Export, OpenRange, head, st};
 use crate::scenario::ControllerSpec;
 use crate::simulate::{AnyLaw, Precision};
-use controller_core::{ControllerInput, ControllerOutput, Mode, PidConfig, Quality, Real};
+use controller_core::{ControllerInput, ControllerOutput, Mode, PidConfig, Quality, Real, Status};
 use std::fmt::Write;
 
 /// Samples of the trace.
@@ -25,9 +25,9 @@ pub(super) fn text(export: &Export<'_>, origin: &str) -> String {
     let last = SAMPLES - 1;
     let mut head = vec![
         format!("Replays {SAMPLES} samples through {block}, which is exported by controller-sim export --format st"),
-        format!("from the same loop of {}, and compares output and status with those of the reference step.", head::plain(origin)),
+        format!("from the same loop of {}, and compares every output with that of the reference step.", head::plain(origin)),
         "One sample in each call; the task's period does not matter.".to_owned(),
-        "DONE and PASSED: every value is the same. FAULTS counts samples that differ, FIRST_FAULT is the first.".to_owned(),
+        "DONE and PASSED: every output is the same in every sample. FAULTS counts samples that differ, FIRST_FAULT is the first.".to_owned(),
     ];
     head.extend(export.open_ranges().iter().flat_map(OpenRange::warning));
     for line in head {
@@ -77,6 +77,8 @@ struct Sample<T> {
     tuning: [f64; 4],
     output: ControllerOutput<T>,
     status: u32,
+    /// The last finite measurement.
+    pv: T,
 }
 
 /// A signal of the trace: a word of the language for every sample.
@@ -162,6 +164,7 @@ fn record<T: Real>(export: &Export<'_>) -> Vec<Column> {
     let base = 0.0_f64.clamp(lo, hi);
     let reach = 1.0_f64.min((hi - lo) / 4.0);
     let (mut y, mut rest) = (base.clamp(config.measurement_lo, config.measurement_hi), None);
+    let mut pv = T::ZERO;
     let mut samples: Vec<Sample<T>> = Vec::new();
     for k in 0..SAMPLES {
         let uneven = f64::from(k.wrapping_mul(0x9E37_79B9) >> 20) / 4096.0 - 0.5;
@@ -213,7 +216,10 @@ fn record<T: Real>(export: &Export<'_>) -> Vec<Column> {
         y += 0.2 * (gain * (u - u_0) - (y - base));
         y = y.clamp(config.measurement_lo, config.measurement_hi);
         let status = output.status.bits() | u32::from(refused) << 26;
-        samples.push(Sample { input, tuning, output, status });
+        if input.y.is_finite_number() {
+            pv = input.y;
+        }
+        samples.push(Sample { input, tuning, output, status, pv });
     }
     columns(&samples, tunable)
 }
@@ -242,6 +248,9 @@ fn columns<T: Real>(samples: &[Sample<T>], tunable: bool) -> Vec<Column> {
     };
     let flag = |name: &str, of: &dyn Fn(&ControllerInput<T>) -> bool| {
         column(name, Type::Flag, &|sample| st::truth(of(&sample.input)).to_owned())
+    };
+    let shown = |name: &str, of: &dyn Fn(&ControllerOutput<T>) -> bool| {
+        column(name, Type::Flag, &|sample| st::truth(of(&sample.output)).to_owned())
     };
     let quality = |sample: &Sample<T>| match sample.input.quality {
         Quality::Good => "2".to_owned(),
@@ -279,10 +288,25 @@ fn columns<T: Real>(samples: &[Sample<T>], tunable: bool) -> Vec<Column> {
     columns.extend([
         number("OUT_OP", &|s| s.output.u),
         number("OUT_OP_UNLIM", &|s| s.output.v),
+        number("OUT_PV_ENG", &|s| s.pv),
         number("OUT_SP_WORKING", &|s| s.output.r),
+        number("OUT_DEV", &|s| s.output.r - s.pv),
+        number("OUT_I_TERM", &|s| s.output.i),
+        number("OUT_PD_TERM", &|s| s.output.pd),
         number("OUT_UF", &|s| s.output.u_f),
+        number("OUT_D_HAT", &|s| s.output.d_hat),
+        number("OUT_BKCAL_OUT", &|s| s.output.r),
         column("OUT_MODE", Type::Count, &|s| mode_code(s.output.mode).to_string()),
         column("OUT_STATUS", Type::Word, &|s| s.status.to_string()),
+        shown("OUT_IN_AUTO", &|o| matches!(o.mode, Mode::Auto | Mode::Cascade)),
+        shown("OUT_IN_CAS", &|o| o.mode == Mode::Cascade),
+        shown("OUT_BLOCKED_UP", &|o| o.blocked_up),
+        shown("OUT_BLOCKED_DN", &|o| o.blocked_down),
+        shown("OUT_HH_ALM", &|o| o.status.has(Status::ALARM_HI_HI)),
+        shown("OUT_H_ALM", &|o| o.status.has(Status::ALARM_HI)),
+        shown("OUT_L_ALM", &|o| o.status.has(Status::ALARM_LO)),
+        shown("OUT_LL_ALM", &|o| o.status.has(Status::ALARM_LO_LO)),
+        shown("OUT_DEV_ALM", &|o| o.status.has(Status::ALARM_DEVIATION)),
     ]);
     columns
 }
