@@ -402,7 +402,7 @@ fn mistakes_are_told() {
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("is not linear"), "{}", text(&output.stderr));
     let output = folder.run(&["analyze", "tank.toml", "--card"]);
-    assert!(text(&output.stderr).contains("has no card"), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("has no card"), "{}", text(&output.stdout));
     // A range that is probably not meant.
     let shown = folder.done(&["batch", "sample", "de.toml", "-n", "3", "--vary", "lag1=2..3"]);
     assert!(shown.contains("warning: lag1 is drawn from 2 to 3, its nominal value is 1"), "{shown}");
