@@ -12,6 +12,8 @@
 mod cases;
 #[path = "loop_card/costs.rs"]
 mod costs;
+#[path = "loop_card/integral.rs"]
+mod integral;
 #[path = "loop_card/jitter.rs"]
 mod jitter;
 #[path = "loop_card/limit.rs"]

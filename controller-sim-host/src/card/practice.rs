@@ -7,6 +7,7 @@ use super::limits::{AtLimits, BAND};
 use super::smallest::Smallest;
 use super::{Better, Figure, Light, LoopCard};
 use crate::output::table::format_number;
+use crate::scenario::CompensatorSpec;
 use controller_core::Real;
 use controller_design::rules::PiMs;
 
@@ -118,17 +119,24 @@ pub(super) fn judge_frequency<T: Real>(card: &mut LoopCard, deployed: &Deployed<
 
     noise_figures(&mut add, deployed, (noise.step, noise.white, *increment), (&y, &u));
     match integral_gain(deployed, m.ms) {
-        Some((ki, of_best)) => {
+        Some(Integral { ki, own, of_best }) => {
             let practice = "at least half of what a PI can have at the same Ms, below a tenth bad (\u{c5}str\u{f6}m, Panagopoulos & H\u{e4}gglund 1998: the largest ki at a given Ms; the shares are this program's)";
             let (judged, note) = match of_best {
-                Some(share) => (
+                Some(share) if share.is_finite() => (
                     light(share, large, 0.5, 0.1),
-                    format!(
-                        "{} of the PI with the largest ki at this Ms; 1/ki is the integral of the error after a unit load",
-                        format_number(share)
-                    ),
+                    format!("{} of the PI with the largest ki at this Ms", format_number(share)),
                 ),
+                Some(_) => (Light::Good, "no integral of the error is left after a load".to_owned()),
                 None => (Light::Good, "no PI of the same plant to compare with".to_owned()),
+            };
+            let note = if ki == own {
+                format!("{note}; 1/K_i is the integral of the error after a unit load")
+            } else {
+                format!(
+                    "{note}; 1/K_i is the integral of the error after a unit load, of which the disturbance block takes its \
+                     share; ki of the PID {}",
+                    format_number(own)
+                )
             };
             add("ki", "K_i, integral gain", &format!("{u}/({y} s)"), ki, large, judged, practice, note);
         }
@@ -215,19 +223,35 @@ fn plain_gain<T: Real>(deployed: &Deployed<'_, T>) -> f64 {
     if gain == 0.0 { f64::INFINITY } else { gain.abs() }
 }
 
-/// `ki` of the deployed law [u/(y s)], and its share of the largest one of a PI at the same Ms.
-fn integral_gain<T: Real>(deployed: &Deployed<'_, T>, ms: f64) -> Option<(f64, Option<f64>)> {
+/// What integrates.
+struct Integral {
+    /// The inverse of the integral of the error after a unit load \[u/(y s)\]: what integrates takes over what the disturbance
+    /// block leaves to it, `1 - kfd` with an estimator and nothing with an observer, whatever their models are.
+    ki: f64,
+    /// `ki` of the PID \[u/(y s)\].
+    own: f64,
+    /// `ki` over the largest one of a PI at the same Ms.
+    of_best: Option<f64>,
+}
+
+fn integral_gain<T: Real>(deployed: &Deployed<'_, T>, ms: f64) -> Option<Integral> {
     let pid = deployed.law.pid()?;
     let ts = deployed.scenario.ts;
-    let ki = ((pid.ki_now.to_f64() + pid.ki_before.to_f64()) / ts).abs();
-    if ki == 0.0 {
+    let own = ((pid.ki_now.to_f64() + pid.ki_before.to_f64()) / ts).abs();
+    if own == 0.0 {
         return None;
     }
+    let left = match &deployed.spec.compensator {
+        CompensatorSpec::None => 1.0,
+        CompensatorSpec::Estimator(estimator) => 1.0 - estimator.kfd,
+        CompensatorSpec::Observer(_) => 0.0,
+    };
+    let ki = own / left;
     let plant = &deployed.scenario.plant;
     // The hold takes half a sample.
     let late = plant.with_dead_time(plant.dead_time() + deployed.scenario.latency + 0.5 * ts).ok();
     let best = late.and_then(|late| PiMs::new(&late, ms.clamp(1.2, 2.0)).ok());
-    Some((ki, best.map(|best| ki / best.pid.ki.abs())))
+    Some(Integral { ki, own, of_best: best.map(|best| ki / best.pid.ki.abs()) })
 }
 
 pub(super) fn judge_smallest<T: Real>(
