@@ -69,8 +69,10 @@ fn sweep_agrees(case: &Case, card: &LoopCard, sweep: &Sweep) {
     ];
     let errors = figures.map(|(key, other)| near(&case.name, key, value(key), other));
     let lower = sweep.factors().into_iter().map(|(factor, _)| factor).filter(|factor| *factor <= 1.0);
+    let lower = lower.fold(0.0, f64::max);
+    assert!(lower == 0.0 || card.value("gm_low").is_some(), "{}: no gm_low", case.name);
     if let Some(low) = card.value("gm_low") {
-        near(&case.name, "gm_low", low, lower.fold(0.0, f64::max));
+        near(&case.name, "gm_low", low, lower);
     }
     // Sufficient for any lateness, hence for one that stays.
     assert!(value("jitter_margin") <= value("delay_margin"), "{}", case.name);

@@ -4,7 +4,7 @@ use super::arguments::{Number, Options, key_and_value};
 use super::card::{read_card, request, save};
 use super::execute::Job;
 use super::scenarios::{Inputs, read_files, read_text};
-use super::{Failure, colours, examples, print};
+use super::{EXIT_REFUSED, Failure, colours, examples, print};
 use crate::analysis::{Analysis, analyse};
 use crate::card::{Request, loop_card};
 use crate::output::{
@@ -158,7 +158,12 @@ pub(super) fn run(arguments: &AnalyzeArguments, json: bool, command: &str) -> Re
         tell(&inputs, &analysed, arguments, &written)?;
     }
     let is_worse = |one: &Analysed<'_>| one.checked.as_ref().is_some_and(|checked| !checked.check.holds());
-    if analysed.iter().any(is_worse) { Err(Failure::worse()) } else { Ok(()) }
+    if analysed.iter().any(is_worse) {
+        return Err(Failure::worse());
+    }
+    let mut cards = analysed.iter().flat_map(|one| &one.cards);
+    let has_none = arguments.card && !cards.any(Result::is_ok);
+    if has_none { Err(Failure { troubles: Vec::new(), code: EXIT_REFUSED }) } else { Ok(()) }
 }
 
 /// Everything for people: warnings, tables, files.

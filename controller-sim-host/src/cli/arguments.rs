@@ -38,7 +38,7 @@ pub(super) enum Command {
     Analyze(super::analyze::AnalyzeArguments),
     /// Judges from a recorded experiment whether a PI loop is tuned for loads
     Assess(super::assess::AssessArguments),
-    /// Writes a designed loop for the target: Rust constants
+    /// Writes a designed loop for the target: Rust constants, a C header, Structured Text
     Export(super::export::ExportArguments),
     /// Designs loops for many plants by many rules and compares them
     Batch(super::batch::BatchArguments),

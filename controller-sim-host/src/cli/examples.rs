@@ -43,7 +43,7 @@ Examples:
 The loop card is that of the law as it is flashed, f32 unless said otherwise. Its jitter margin is the lateness that every
 output may have on top of the latency, another one in each sample: sufficient for stability, by Kao and Lincoln's criterion.
 
-Exit codes: 0 done, 4 a figure does not keep the bounds of `--check` or is missing, 3 there is no stable loop, 2 bad input.";
+Exit codes: 0 done, 4 a figure does not keep the bounds of `--check` or is missing, 3 there is no stable loop, or no card, 2 bad input.";
 
 pub(super) const DEMO: &str = "\
 Examples:
@@ -168,7 +168,8 @@ response; the simulation does not decide. Indices and margins are summed up over
 where the values span no more than a factor of four. A sample depends on the seed and its number only: threads,
 interruptions and shards change no byte of the rows.
 
-Exit codes: 0 done, also when samples are refused (each row says why); 3 when no row has a result; 2 bad input.";
+Exit codes: 0 every row has a result; 3 all rows are there, but some have none (refused, or not
+simulated): each says why, and the summary counts them; 2 bad input.";
 pub(super) const BATCH_MAP: &str = "\
 Examples:
   controller-sim batch map --x L=0.05:0.95:19 --y alpha_ratio=0.01:100:17:log --at ms=1.4 --over pi-ms --report map.html
@@ -184,7 +185,8 @@ noise_ratio, tf, kpidn, tfd, kden, tau_c, b0 where the rule looks at them. A poi
 the picture, with its reason in the rows. Rows, --resume, --shard and `batch merge` are as those of `batch`; a complete file is
 drawn again by the same command with --resume.
 
-Exit codes: 0 done, 3 when no point has a result, 2 bad input.";
+Exit codes: 0 every point has a value; 3 the map is there, but has holes: each row says why, and the
+summary counts them; 2 bad input.";
 
 pub(super) const BATCH_MERGE: &str = "\
 Examples:

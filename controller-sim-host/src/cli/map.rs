@@ -191,7 +191,8 @@ pub(super) fn run(arguments: &MapArguments, json: bool, command: &str) -> Result
         rows.chain(drawn).map(|(kind, path)| Written { kind, path, run: None }).collect();
     let made = Mapped { study: &study, rows: range.len(), kept, values: &values, files: &files };
     print(&if json { map_json(&made) } else { map_table(&made) })?;
-    if values.counts()[0] > 0 { Ok(()) } else { Err(Failure { troubles: Vec::new(), code: EXIT_REFUSED }) }
+    let [_, refused, failed] = values.counts();
+    if refused + failed == 0 { Ok(()) } else { Err(Failure { troubles: Vec::new(), code: EXIT_REFUSED }) }
 }
 
 /// What the letter of the plant that is there without being given stands for.

@@ -162,11 +162,11 @@ pub(super) fn run(arguments: &SampleArguments, json: bool, command: &str) -> Res
     show(&made, json)
 }
 
-/// Prints what it comes to; without any loop that is known to be stable or not the exit code says so.
+/// Prints what it comes to; the exit code says whether rows are without a result.
 pub(super) fn show(made: &Sampled<'_>, json: bool) -> Result<(), Failure> {
     print(&if json { sample_json(made) } else { sample_table(made) })?;
-    let [stable, unstable, ..] = made.summary.counts();
-    if stable + unstable > 0 { Ok(()) } else { Err(Failure { troubles: Vec::new(), code: EXIT_REFUSED }) }
+    let [_, _, refused, failed] = made.summary.counts();
+    if refused + failed == 0 { Ok(()) } else { Err(Failure { troubles: Vec::new(), code: EXIT_REFUSED }) }
 }
 
 /// What is wrong with the names of files, all at once.

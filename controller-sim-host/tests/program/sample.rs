@@ -403,6 +403,13 @@ fn mistakes_are_told() {
     assert!(text(&output.stderr).contains("is not linear"), "{}", text(&output.stderr));
     let output = folder.run(&["analyze", "tank.toml", "--card"]);
     assert!(text(&output.stdout).contains("has no card"), "{}", text(&output.stdout));
+    // Some samples are no scenario: the others have their rows, and the exit code says that some have none.
+    let some = ["batch", "sample", "de.toml", "-n", "8", "--vary", "noise.std=-1..1 abs", "--json"];
+    let output = folder.run(&some);
+    let counts = &json(&output)["counts"];
+    let count = |key: &str| counts[key].as_u64().expect("a number");
+    assert!(count("refused") > 0 && count("stable") > 0, "{counts}");
+    assert_eq!(output.status.code(), Some(3));
     // A range that is probably not meant.
     let shown = folder.done(&["batch", "sample", "de.toml", "-n", "3", "--vary", "lag1=2..3"]);
     assert!(shown.contains("warning: lag1 is drawn from 2 to 3, its nominal value is 1"), "{shown}");

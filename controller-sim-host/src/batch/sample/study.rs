@@ -127,7 +127,7 @@ impl SampleStudy {
     pub fn new(scenario: Scenario, drawn: Seeded) -> Result<Self, String> {
         if let Some(plant) = &scenario.nonlinear {
             return Err(format!(
-                "the {} is not linear, and only lags, gains and dead times are drawn: `run` shows its linear model",
+                "the {} is not linear, and its loop has no margins: `run` shows its linear model, which can be drawn around",
                 plant.name()
             ));
         }
