@@ -47,7 +47,7 @@ fn theory(ts: &str) -> Ratios {
     ["C1", "C2"].map(|pi| {
         let of = |name: &str| page.after("input up by 0.1 %", name);
         ALPHAS.map(|alpha| {
-            let [iae, ise, itae, e_max, _] = over(of(&format!("{pi}, alpha = {alpha}")), of(pi));
+            let [iae, ise, itae, e_max, _] = over(of(&format!("{pi}, {alpha}")), of(pi));
             [iae, ise, itae, e_max]
         })
     })
